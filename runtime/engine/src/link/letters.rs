@@ -1,7 +1,7 @@
-//! Letters of a link: drafts the letters that are sent, and decides which of those that arrive are accepted.
+//! Letters of a link: prepares letters to be sent, and decides which letters that arrive are accepted.
 //!
-//! The proof of a letter covers its number and the sessions of both robots, which their states contain. So a letter
-//! that somebody has recorded and sends again is not accepted a second time, whatever medium carries it.
+//! The proof of a letter covers its number and the sessions of both robots, which the robots' states contain. So a
+//! replayed letter is not accepted a second time, on any medium.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -17,11 +17,11 @@ use super::{Content, Letter, RefusedPlan, clock, lock};
 
 /// The letters of a robot.
 pub(super) struct Letters {
-    /// Name of the robot.
+    /// Name of this robot.
     own: String,
-    /// Session of the robot.
+    /// Session of this robot.
     session: u64,
-    /// Name of each peer with which letters are exchanged, with the key that only this robot and the peer have.
+    /// Name of each peer with which letters are exchanged, with the key that only these two robots share.
     keys: Vec<(String, Key)>,
     unread: Mutex<Unread>,
     questions: Mutex<Questions>,
@@ -30,36 +30,36 @@ pub(super) struct Letters {
 /// Letters that have arrived.
 #[derive(Default)]
 struct Unread {
-    /// For each sender and each of its sessions, the number of the last letter.
+    /// Number of the last letter from each sender in each of its sessions.
     taken: BTreeMap<(String, u64), u64>,
-    /// Letters since the last turn.
+    /// Letters that have arrived since the last turn.
     letters: Vec<Waiting>,
-    /// Plans that were refused, and are not answered yet.
+    /// Plans that were refused and not answered yet.
     refused: Vec<RefusedPlan>,
 }
 
 /// A letter that waits for the robot's turn.
 struct Waiting {
     letter: Letter,
-    /// Time at which the letter arrived.
+    /// Arrival time of the letter.
     at: Nanos,
-    /// Delay of the letter on its way.
+    /// Transmission delay of the letter.
     late: Nanos,
 }
 
 impl Letters {
-    /// Returns the letters of the robot `own` in this session. `keys` are the names of peers, each with the key that
+    /// Returns the letters of the robot `own` in this session. `keys` contains the name of each peer, with the key that
     /// the robot shares with the peer.
     pub(super) fn new(own: &str, session: u64, keys: &[(String, String)]) -> Self {
         let keys = keys.iter().map(|(name, key)| (name.clone(), Key::of_letters(key))).collect();
         Self { own: own.to_owned(), session, keys, unread: Mutex::default(), questions: Mutex::default() }
     }
 
-    /// Returns the draft of a letter to the peer `to`, which is sent at time `sent` of this robot's session. `session`
-    /// is the peer's session, if it is known.
+    /// Returns the draft of a letter to the peer `to`, posted at time `sent` of this robot's session. `session` is the
+    /// peer's session; `None` if it is not known.
     ///
     /// # Errors
-    /// Returns a sentence if the robot and the peer have no key for letters, or if no state of the peer has arrived.
+    /// Returns a sentence if the robot and the peer share no key for letters, or if no state of the peer has arrived.
     pub(super) fn draft(&self, to: &str, letter: &Letter, session: Option<u64>, sent: Nanos) -> Result<Draft, String> {
         let key = self.key(to).ok_or_else(|| format!("the file of the link has no key `plans` for {to}"))?;
         let meant_for = session.ok_or_else(|| {
@@ -69,14 +69,15 @@ impl Letters {
         Ok(letter_frame::written(&envelope, letter, key))
     }
 
-    /// Notes that a letter is being sent to a robot at time `now`. If it is a plan, an answer to it is accepted.
+    /// Records that a letter is being sent to a robot at time `now`. If it contains a plan, an answer to it is
+    /// accepted.
     pub(super) fn posts(&self, to: &str, letter: &Letter, now: Instant) {
         if letter.content.is_plan() {
             lock(&self.questions).ask(to, letter.number, now);
         }
     }
 
-    /// Forgets the letter of this number, which was not sent.
+    /// Removes the record of the letter with this number, which was not sent.
     pub(super) fn forget(&self, number: u64) {
         lock(&self.questions).forget(number);
     }
@@ -87,13 +88,13 @@ impl Letters {
         lock(&self.questions).unanswered(now)
     }
 
-    /// Takes a frame that has arrived from a robot, whose current session is `session`. A plan is refused if it is too
-    /// late, if it was sent to an earlier run of this robot, or if a newer plan of its sender arrives before the next
-    /// turn. `late` returns the delay of a letter that was posted at a given time of the robot's session.
+    /// Processes a frame that has arrived from a robot with the current session `session`. A plan is refused if it is
+    /// too late, if it was sent to an earlier run of this robot, or if a newer plan from its sender arrives before the
+    /// next turn. `late` returns the delay of a letter, given the time of the sender's session at which it was posted.
     ///
     /// # Errors
-    /// Returns the end of a sentence if the frame is not a letter from this robot's current session to this robot, or
-    /// if it answers a plan that was not sent in this run.
+    /// Returns the end of a sentence if the frame is not a letter to this robot from the current session of the sender,
+    /// or if it answers a plan that was not sent in this run.
     pub(super) fn take(
         &self,
         frame: &[u8],
@@ -114,7 +115,7 @@ impl Letters {
         }
         let mut unread = lock(&self.unread);
         let last = unread.taken.entry((from, sent_in)).or_default();
-        // A sender does not know if a letter has arrived when its connection breaks, and sends it once more.
+        // If its connection breaks, a sender does not know whether a letter has arrived, and sends it again.
         if letter.number <= *last {
             return Ok(());
         }
@@ -134,7 +135,7 @@ impl Letters {
         Ok(())
     }
 
-    /// Takes the letters that have arrived. Plans that are too late at time `now` are refused.
+    /// Takes the letters that have arrived. Refuses plans that are too late at time `now`.
     pub(super) fn arrived(&self, now: Nanos) -> Vec<Letter> {
         let mut unread = lock(&self.unread);
         let waiting = std::mem::take(&mut unread.letters).into_iter();
@@ -159,7 +160,7 @@ impl Letters {
 }
 
 impl Unread {
-    /// Adds a plan, which replaces an older plan of its sender, or refuses it if it is too late.
+    /// Adds a plan, which replaces an older plan from its sender; refuses the plan if it is too late.
     fn put(&mut self, plan: Waiting) {
         if let Some(reason) = plan.lateness(plan.at) {
             return self.refuse(&plan.letter, reason);
@@ -172,8 +173,8 @@ impl Unread {
         self.letters.push(plan);
     }
 
-    /// Notes that a plan was refused and has to be answered. If a sender has too many such plans, further ones get no
-    /// answer.
+    /// Records that a plan was refused and has to be answered. If too many refused plans of a sender wait for an
+    /// answer, further ones are not answered.
     fn refuse(&mut self, letter: &Letter, reason: String) {
         let Letter { from, number, .. } = letter;
         if self.refused.iter().filter(|plan| plan.from == *from).count() < UNREAD {
@@ -183,8 +184,8 @@ impl Unread {
 }
 
 impl Waiting {
-    /// Returns the reason to refuse a plan that is too late at time `now`, because somebody on the line may have held
-    /// it back. Returns `None` for an answer, and for a plan in time.
+    /// Returns the reason to refuse a plan that is too late at time `now`: an attacker on the line may have delayed it.
+    /// Returns `None` for an answer, and for a plan in time.
     fn lateness(&self, now: Nanos) -> Option<String> {
         let limit = self.letter.content.limit();
         let late = self.late.0.saturating_add(now.since(self.at).0);

@@ -1,10 +1,10 @@
-//! The state link, by which robots send each other their poses, velocities, rounds, and attributes of their modules
-//! (paper, sections III and IV-D).
+//! The state link: robots send each other their poses, velocities, rounds, and module attributes (paper, sections III
+//! and IV-D).
 //!
 //! A [`Link`] carries states and letters: [`Air`] between robots in one process, [`Tcp`] between processes and
-//! machines. An [`Endpoint`] drafts and checks the frames of a link to other processes, whatever medium carries them.
-//! [`StateLink`] is the module of one robot: before a turn it writes the states that have arrived into the output, and
-//! after the turn it sends the robot's own state. It never waits.
+//! machines. An [`Endpoint`] prepares and checks the frames of a link to other processes, for any medium. [`StateLink`]
+//! belongs to one robot: before a turn, it writes the states that have arrived to the output; after the turn, it sends
+//! the robot's own state. It never waits.
 
 mod air;
 mod bytes;
@@ -48,7 +48,7 @@ pub use tcp::{Tcp, TcpSettings};
 use crate::attribute::{AttributeName, Reading};
 use crate::module::Refusal;
 
-/// A medium through which a robot sends its states to other robots, and receives their states.
+/// A medium through which a robot exchanges states and letters with other robots.
 pub trait Link: Send {
     /// Sends the robot's state at time `now`, without waiting.
     fn send(&mut self, state: &State, now: Nanos);
@@ -58,30 +58,30 @@ pub trait Link: Send {
     fn session(&self) -> u64 {
         0
     }
-    /// Sends a letter to the robot of this name at time `now`, without waiting.
+    /// Sends a letter to the robot `to` at time `now`, without waiting.
     ///
     /// # Errors
     /// Returns a sentence with the reason if the letter cannot be sent.
     fn post(&mut self, to: &str, letter: &Letter, now: Nanos) -> Result<(), String>;
     /// Calls `take` with each letter that has arrived by `now`.
     fn letters(&mut self, now: Nanos, take: &mut dyn FnMut(Letter));
-    /// Calls `take` with each plan that was refused on its arrival, and has to be answered.
+    /// Calls `take` with each plan that was refused on arrival and has to be answered.
     fn refused_plans(&mut self, _take: &mut dyn FnMut(RefusedPlan)) {}
     /// Calls `say` with each message for the operator since the last call.
     fn messages(&mut self, _say: &mut dyn FnMut(&str)) {}
 }
 
-/// A board that takes attributes of other robots.
+/// A board for attributes of other robots.
 pub(crate) trait Foreign {
     /// Puts a value that another robot has published on the board.
     ///
     /// # Errors
-    /// Fails if a module of this robot has the name, if one reads the attribute as another kind, if the attribute has
-    /// changed its kind, or if there are too many attributes.
+    /// Fails if a module of this robot has the same name, if a module reads the attribute with another kind, if the
+    /// attribute's kind has changed, or if there are too many attributes.
     fn put_foreign(&mut self, name: &AttributeName, reading: Reading) -> Result<(), Refusal>;
 }
 
-/// Locks a mutex even if it is poisoned, that is, if a thread panicked while holding it.
+/// Locks a mutex, even if it is poisoned because a thread panicked while it held the lock.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

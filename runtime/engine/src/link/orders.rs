@@ -1,4 +1,4 @@
-//! Plans that other robots have sent, until they take over or are refused, and the answers to plans that this robot has
+//! Plans that other robots have sent, until they take over or are refused, and answers to plans that this robot has
 //! sent.
 
 use std::collections::{BTreeMap, VecDeque};
@@ -9,13 +9,13 @@ use super::pace::{Admission, Pace};
 use super::{Content, LONGEST_TEXT, Letter, Link, RefusedPlan};
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 
-/// Answer to a plan of a robot that sends plans too fast.
+/// Answer to a plan from a robot that sends plans too fast.
 const TOO_FAST: &str = "it sends more than one plan a second: send it again later";
 
 /// Maximum number of sent plans whose names are kept.
 const NAMES: usize = 64;
 
-/// The plans that are exchanged with other robots.
+/// Plans that are exchanged with other robots.
 #[derive(Debug, Default)]
 pub(super) struct Orders {
     /// Name of this robot.
@@ -24,37 +24,37 @@ pub(super) struct Orders {
     pub(super) takes_from: Vec<String>,
     /// Names of the robots to which plans can be sent.
     pub(super) sends_to: Vec<String>,
-    /// Number of the letter that was sent last.
+    /// Number of the last letter that was sent.
     sent: u64,
-    /// Numbers and names of the plans that were sent last, for messages about their answers.
+    /// Numbers and names of recently sent plans, for messages about their answers.
     names: VecDeque<(u64, String)>,
-    /// Plans of other robots that have neither taken over nor been refused.
+    /// Plans of other robots that have neither taken over nor been refused yet.
     waiting: Vec<Order>,
-    /// Pace of each robot that has sent plans, by its name.
+    /// Pace of each robot that has sent plans, by name.
     paces: BTreeMap<String, Pace>,
 }
 
 /// A plan of another robot.
 #[derive(Debug)]
 struct Order {
-    /// Number of the request that compiles the plan on this robot.
+    /// Number of this robot's request to compile the plan.
     ticket: u32,
     from: String,
     /// Number of the letter with the plan.
     number: u64,
     /// Moment at which the plan takes over.
     when: When,
-    /// Warnings about the plan that no answer has contained yet; empty if there are none.
+    /// Warnings about the plan that were not included in an answer yet; empty if there are none.
     warnings: String,
 }
 
 impl Orders {
-    /// Returns the orders of the robot `own`, which exchanges no plans as yet.
+    /// Returns the orders of the robot `own`, which does not exchange plans with any robot yet.
     pub(super) fn of(own: &str) -> Self {
         Self { own: own.to_owned(), ..Self::default() }
     }
 
-    /// Sends the text of the plan `name`, which is to take over on the robot `to` at the moment `when`.
+    /// Sends the text of the plan `name` to the robot `to`, where it takes over at the moment `when`.
     ///
     /// # Errors
     /// Returns a sentence with the reason if the plan cannot be sent.
@@ -74,8 +74,8 @@ impl Orders {
         Ok(())
     }
 
-    /// Returns the name, for messages, of the plan that this robot has sent in letter `number`; "a plan" if the name is
-    /// not known any more.
+    /// Returns, for messages, the name of the plan that this robot sent in letter `number`; "a plan" if the name is no
+    /// longer known.
     fn plan(&self, number: u64) -> String {
         let name = self.names.iter().find(|(sent, _)| *sent == number);
         name.map_or_else(|| "a plan".to_owned(), |(_, name)| format!("the plan {name}"))
@@ -88,7 +88,7 @@ impl Orders {
         Ok(())
     }
 
-    /// Begins to compile the plans that have arrived. Returns messages to the operator about refused plans, and about
+    /// Starts to compile the plans that have arrived. Returns messages to the operator about refused plans and about
     /// answers of other robots.
     pub(super) fn take<A: EngineAlphabet>(
         &mut self,
@@ -130,7 +130,7 @@ impl Orders {
         messages.collect()
     }
 
-    /// Answers the plans about which there are new events; returns messages to the operator about them.
+    /// Answers the plans that have new events; returns messages to the operator about these plans.
     pub(super) fn decide<A: EngineAlphabet>(
         &mut self,
         link: &mut dyn Link,
@@ -159,7 +159,7 @@ impl Orders {
         messages
     }
 
-    /// Answers a plan. A robot that cannot be reached gets no answer.
+    /// Answers a plan. If the robot cannot be reached, it gets no answer.
     fn answer(&mut self, link: &mut dyn Link, to: &str, of: u64, result: Result<&str, &str>, now: Nanos) {
         let (Ok(sentence) | Err(sentence)) = result;
         let content = Content::Answer { of, is_accepted: result.is_ok(), sentence: sentence.to_owned() };
@@ -168,7 +168,7 @@ impl Orders {
 }
 
 impl Order {
-    /// Returns the answer to the sender after an event of the request; `None` if the event needs no answer.
+    /// Returns the answer to the sender after an event of the request; `None` if the event requires no answer.
     fn answer<A: EngineAlphabet>(&mut self, event: &PlanEvent, plans: &Plans<A>) -> Option<Result<String, String>> {
         let refused = |sentence: &str| Some(Err(sentence.to_owned()));
         match event {
@@ -193,7 +193,7 @@ impl Order {
         }
     }
 
-    /// Returns the sentence, followed by the warnings about the plan unless an earlier answer contained them.
+    /// Returns the sentence, followed by the warnings about the plan if no earlier answer contained them.
     fn warned(&mut self, sentence: String) -> String {
         match std::mem::take(&mut self.warnings).trim_end() {
             "" => sentence,
@@ -202,8 +202,8 @@ impl Order {
     }
 }
 
-/// Returns a text of another robot with its control characters escaped. Lines after the first are indented, so that
-/// none of them looks like a line of this robot's own report.
+/// Returns text from another robot with escaped control characters. Lines after the first are indented, so none of them
+/// looks like a line of this robot's own report.
 fn printable(text: &str) -> String {
     text.lines().map(|line| Printable(line).to_string()).collect::<Vec<_>>().join("\n    ")
 }

@@ -1,4 +1,4 @@
-//! The newest state and the letters of a robot, which the robot's turns pass to a thread that sends them.
+//! The newest state and the letters of a robot, which the robot's turns pass to the thread that sends them.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -8,28 +8,27 @@ use super::frame::Draft;
 use super::letter::UNREAD;
 use super::lock;
 
-/// Maximum number of answers that are kept for one robot: each plan has an answer when it waits, and one when it
-/// begins.
+/// Maximum number of answers kept for one robot: each plan has one answer when it is waiting, and one when it begins.
 const ANSWERS: usize = 2 * UNREAD;
-/// Time without a new state after which the last one is to be sent again.
+/// Interval at which the last state is sent again if there is no new state.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 
 /// A letter that is to be sent.
 #[derive(Clone)]
 pub struct Posted {
-    /// Name of the robot to which the letter is sent.
+    /// Name of the recipient.
     pub to: String,
     /// Number of the letter; this robot counts its letters from 1.
     pub number: u64,
-    /// The letter, without its proof.
+    /// Draft of the letter, without its proof.
     pub draft: Draft,
-    /// `true` if the letter contains a plan, so that an answer is expected.
+    /// `true` if the letter contains a plan, for which an answer is expected.
     pub is_plan: bool,
-    /// Time after which the letter is not sent any more.
+    /// Time after which the letter is no longer sent.
     pub limit: Duration,
 }
 
-/// The newest state and the letters that wait for a sender.
+/// The newest state and the letters that have to be sent.
 #[derive(Default)]
 pub struct Outbox {
     waiting: Mutex<Waiting>,
@@ -40,31 +39,31 @@ pub struct Outbox {
 struct Waiting {
     /// `true` while a connection is open.
     is_open: bool,
-    /// The newest state; `None` once it has been taken.
+    /// The newest state; `None` after it was taken.
     state: Option<Draft>,
     letters: VecDeque<Waits>,
 }
 
-/// A letter that waits to be sent, or that was sent and is kept because the connection may break before it arrives.
+/// A letter that has to be sent, or that was sent and is kept because the connection may break before it arrives.
 struct Waits {
     letter: Posted,
     /// Time at which the letter was posted.
     at: Instant,
-    /// `true` once the letter was sent on the open connection.
+    /// `true` once the letter has been sent on the current connection.
     is_sent: bool,
-    /// `true` once the letter was sent on any connection.
+    /// `true` once the letter has been sent on any connection.
     was_sent: bool,
 }
 
 impl Outbox {
-    /// Notes that a connection is open, on which nothing has been sent.
+    /// Records that a new connection is open, on which nothing has been sent yet.
     pub fn open(&self) {
         let mut waiting = lock(&self.waiting);
         waiting.is_open = true;
         waiting.letters.iter_mut().for_each(|waits| waits.is_sent = false);
     }
 
-    /// Notes that no connection is open.
+    /// Records that no connection is open.
     pub fn close(&self) {
         lock(&self.waiting).is_open = false;
     }
@@ -78,7 +77,7 @@ impl Outbox {
     /// Appends a letter at time `now`, without waiting.
     ///
     /// # Errors
-    /// Returns a sentence if the letter is a plan and no connection is open, or if too many letters wait.
+    /// Returns a sentence if the letter contains a plan and no connection is open, or if the queue is full.
     pub fn post(&self, letter: Posted, now: Instant) -> Result<(), String> {
         let mut waiting = lock(&self.waiting);
         if letter.is_plan && !waiting.is_open {
@@ -90,7 +89,7 @@ impl Outbox {
             return Err(format!("{UNREAD} plans wait for {} already", letter.to));
         }
         if !letter.is_plan && count >= ANSWERS {
-            // One that was sent has probably arrived.
+            // If the queue of answers is full, an answer that was sent is dropped: it has probably arrived.
             let oldest = waiting.letters.iter().position(|waits| is_alike(waits) && waits.was_sent);
             let oldest = oldest.ok_or_else(|| format!("{ANSWERS} answers wait for {} already", letter.to))?;
             waiting.letters.remove(oldest);
@@ -105,8 +104,8 @@ impl Outbox {
         self.is_new.notify_all();
     }
 
-    /// Waits at most half a second for a new state or an unsent letter; returns the state, or `None` if there is no new
-    /// one.
+    /// Waits at most half a second for a new state or an unsent letter. Returns the state, or `None` if there is no new
+    /// state.
     #[must_use]
     pub fn next(&self) -> Option<Draft> {
         let waiting = lock(&self.waiting);
@@ -117,7 +116,7 @@ impl Outbox {
         waiting.state.take()
     }
 
-    /// Returns the first letter that has not been sent on the open connection and has not reached its limit at time
+    /// Returns the first letter that was not sent on the current connection and has not reached its time limit at
     /// `now`.
     #[must_use]
     pub fn letter(&self, now: Instant) -> Option<Posted> {
@@ -126,20 +125,20 @@ impl Outbox {
         Some(letter.letter.clone())
     }
 
-    /// Notes that the letter of this number has been sent. If the connection is opened again, the letter is sent once
-    /// more, unless its limit has passed or, for a plan, its answer has arrived.
+    /// Records that the letter with this number was sent. If a new connection is opened, the letter is sent again,
+    /// unless its time limit has passed or, for a plan, the answer has arrived.
     pub fn is_sent(&self, number: u64) {
         for waits in lock(&self.waiting).letters.iter_mut().filter(|waits| waits.letter.number == number) {
             (waits.is_sent, waits.was_sent) = (true, true);
         }
     }
 
-    /// Removes the letter of this number, whose plan has been answered.
+    /// Removes the letter with this number, because its plan was answered.
     pub fn is_answered(&self, number: u64) {
         lock(&self.waiting).letters.retain(|waits| waits.letter.number != number);
     }
 
-    /// Removes the letters that have waited too long at time `now`; returns those that were never sent.
+    /// Removes letters that have reached their time limit at `now`; returns those that were never sent.
     #[must_use]
     pub fn late(&self, now: Instant) -> Vec<Posted> {
         let mut late = Vec::new();

@@ -1,36 +1,36 @@
-//! The rate at which another robot may send plans. It is limited because each plan is compiled and recorded.
+//! Limits the rate at which another robot may send plans, because each plan is compiled and recorded.
 
 use mdle_runtime::Nanos;
 
-/// Average time between two plans at the maximum rate, in nanoseconds.
+/// Minimum average time between two plans, in nanoseconds.
 const SPACING: u64 = 1_000_000_000;
-/// Maximum burst: the time, in nanoseconds, that its plans would take at this average.
+/// Maximum burst, in nanoseconds: the time for its plans at the maximum average rate.
 const BURST: u64 = 4 * SPACING;
 
-/// The pace of one robot.
+/// Rate limiter for the plans of one robot.
 #[derive(Debug, Default)]
 pub(super) struct Pace {
-    /// Time after which a full burst is permitted again.
+    /// Time from which a full burst is permitted again.
     rested: Nanos,
-    /// `true` if the last plan came too fast.
+    /// `true` if the last plan came too early.
     is_too_fast: bool,
 }
 
-/// Decision about a plan, depending on the time at which it arrives.
+/// Decision about a plan, based on its arrival time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Admission {
-    /// The plan is taken.
+    /// The plan is accepted.
     Taken,
-    /// The plan comes too fast after one that was taken.
+    /// The plan comes too early after a plan that was accepted.
     TooFast,
-    /// The plan comes too fast, as did the plan before it.
+    /// The plan comes too early, as did the previous plan.
     StillTooFast,
 }
 
 impl Pace {
-    /// Decides about a plan that comes at time `now`.
+    /// Decides whether to accept a plan that arrives at time `now`.
     pub(super) fn admits(&mut self, now: Nanos) -> Admission {
-        // A clock that jumps back makes nobody wait longer than a burst does.
+        // After the clock jumps back, no robot waits longer than after a full burst.
         let debt = self.rested.since(now).0.min(BURST);
         let was_too_fast = std::mem::replace(&mut self.is_too_fast, debt + SPACING > BURST);
         let spent = if self.is_too_fast { debt } else { debt + SPACING };
@@ -54,7 +54,7 @@ mod tests {
         use Admission::{StillTooFast, Taken, TooFast};
         assert_eq!([5_000; 6].map(&mut at), [Taken, Taken, Taken, Taken, TooFast, StillTooFast]);
         assert_eq!([5_999, 6_000, 6_001, 7_000].map(&mut at), [StillTooFast, Taken, TooFast, Taken]);
-        // The clock jumps back by an hour and more.
+        // The clock jumps back by more than an hour.
         assert_eq!([0, 999, 1_000, 9_000].map(&mut at), [TooFast, StillTooFast, Taken, Taken]);
     }
 }

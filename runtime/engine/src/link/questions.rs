@@ -1,16 +1,16 @@
-//! Plans that were sent to other robots, and their answers.
+//! Plans that this robot has sent to other robots and that wait for answers.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// Time after which a plan without an answer is reported.
+/// Time after which an unanswered plan is reported.
 const ANSWERS: Duration = Duration::from_secs(10);
-/// Maximum number of sent plans that are remembered.
+/// Maximum number of sent plans that are kept.
 const KNOWN: usize = 64;
-/// Maximum number of answers to a plan: that it waits, that it begins, and one more.
+/// Maximum number of answers to a plan: one when it is waiting, one when it begins, and one more.
 const MOST: u8 = 3;
 
-/// The sent plans that are remembered, the oldest first.
+/// The sent plans that are kept, oldest first.
 #[derive(Debug, Default)]
 pub(super) struct Questions(VecDeque<Question>);
 
@@ -18,17 +18,17 @@ pub(super) struct Questions(VecDeque<Question>);
 #[derive(Debug)]
 struct Question {
     to: String,
-    /// Number of the letter with the plan.
+    /// Number of the letter that contains the plan.
     number: u64,
     at: Instant,
     /// Number of answers that have arrived.
     answers: u8,
-    /// `true` until an answer has arrived, or its absence was reported.
+    /// `true` until an answer has arrived or the missing answer was reported.
     is_open: bool,
 }
 
 impl Questions {
-    /// Notes that a plan was sent in the letter of this number at time `now`.
+    /// Records that a plan was sent in the letter with this number at time `now`.
     pub(super) fn ask(&mut self, to: &str, number: u64, now: Instant) {
         if self.0.len() >= KNOWN {
             self.0.pop_front();
@@ -36,15 +36,15 @@ impl Questions {
         self.0.push_back(Question { to: to.to_owned(), number, at: now, answers: 0, is_open: true });
     }
 
-    /// Forgets the plan in the letter of this number, which was not sent.
+    /// Removes the plan in the letter with this number, which was not sent.
     pub(super) fn forget(&mut self, number: u64) {
         self.0.retain(|question| question.number != number);
     }
 
-    /// Notes an answer to the plan in the letter of this number.
+    /// Records an answer to the plan in the letter with this number.
     ///
     /// # Errors
-    /// Returns the end of a sentence if the robot was not sent this plan, or has answered it too often.
+    /// Returns the end of a sentence if this plan was not sent to the robot, or was answered too often.
     pub(super) fn answer(&mut self, from: &str, number: u64) -> Result<(), String> {
         let question = self.0.iter_mut().find(|question| question.to == from && question.number == number);
         let question = question.ok_or_else(|| "it answers a plan that was not sent".to_owned())?;
@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(questions.unanswered(at(9)), Vec::<String>::new());
         assert!(questions.answer("eve", 1).is_err(), "a plan for another robot");
         assert_eq!(questions.answer("bob", 3).unwrap_err(), "it answers a plan that was not sent");
-        // A plan may have several answers: that it waits, and that it has taken over.
+        // A plan may have several answers: it is waiting, and it has taken over.
         assert_eq!([(); 3].map(|()| questions.answer("bob", 1)), [const { Ok(()) }; 3]);
         assert_eq!(questions.answer("bob", 1).unwrap_err(), "it is one of more than 3 answers to a plan");
         assert_eq!((questions.unanswered(at(10)), questions.unanswered(at(11))), (vec!["eve".to_owned()], vec![]));

@@ -1,15 +1,14 @@
-//! Warnings about refused connections, states and letters. A warning is repeated only after a while, however often its
-//! cause recurs.
+//! Warnings about refused connections, states and letters. A recurring warning is repeated only at intervals.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Time for which a warning is not repeated.
+/// Time after a warning during which it is not repeated.
 const QUIET: Duration = Duration::from_secs(10);
-/// Maximum number of warnings that are remembered.
+/// Maximum number of warnings that are kept.
 const KNOWN: usize = 64;
 
-/// The recent warnings, by their texts.
+/// Recent warnings by text.
 #[derive(Debug, Default)]
 pub(super) struct Refusals(BTreeMap<String, Refusal>);
 
@@ -17,13 +16,13 @@ pub(super) struct Refusals(BTreeMap<String, Refusal>);
 struct Refusal {
     /// Time at which the warning was given.
     at: Instant,
-    /// Number of times that the cause has recurred since then.
+    /// Number of times that the cause has recurred since the warning.
     count: u32,
 }
 
 impl Refusals {
-    /// Returns the warning that `what` is refused at time `now`. Returns `None` if the warning was given a short while
-    /// ago, or if there are too many different ones.
+    /// Returns the warning that `what` is refused at time `now`. Returns `None` if the same warning was given a short
+    /// time ago, or if there are too many different warnings.
     pub(super) fn warning(&mut self, what: &str, reason: &str, now: Instant) -> Option<String> {
         let warning = format!("warning: state link: {what} is refused: {reason}");
         if let Some(known) = self.0.get_mut(&warning) {

@@ -1,15 +1,15 @@
-//! Rounds of `rendezvous`: for each other robot, the number of scopes that a robot's plan has entered and that have a
-//! `rendezvous` with the other robot (docs/src/reference/semantics.md, 2.6).
+//! Counts the rounds of `rendezvous`: for each other robot, the number of scopes entered by the plan that have a
+//! `rendezvous` with that robot (docs/src/reference/semantics.md, 2.6).
 
 use mdle_host::{Passes, Texts, Transitions, outwards};
 use mdle_runtime::Plan;
 
-/// The rounds of a robot.
+/// Rounds of a robot with each other robot.
 #[derive(Debug, Default)]
 pub(super) struct Rounds {
     counts: Vec<(&'static str, u64)>,
     passes: Passes,
-    /// Number of the plan whose scopes were counted last, from 1; 0 before the first plan.
+    /// Number of the plan whose scopes were last counted, from 1; 0 before the first plan.
     plan: u64,
 }
 
@@ -19,7 +19,7 @@ impl Rounds {
         self.counts.iter().copied()
     }
 
-    /// Returns the number of rounds with the robot of this name.
+    /// Returns the number of rounds with the robot `robot`.
     pub(super) fn with(&self, robot: &str) -> u64 {
         self.counts.iter().find(|(name, _)| *name == robot).map_or(0, |(_, count)| *count)
     }
@@ -33,7 +33,7 @@ impl Rounds {
         if number != self.plan {
             self.passes = Passes::default();
             let first = fsm.atoms.first().map_or(0, |atom| atom.scope);
-            // A plan that goes on after it was suspended enters nothing.
+            // A plan that continues after it was suspended enters no scopes.
             if number > self.plan {
                 outwards(fsm, first).for_each(|(scope, _)| count(&mut self.counts, plan, scope));
             }

@@ -1,16 +1,16 @@
-//! Sessions of the other robots. Each run of a robot's program is a session with a random number, and counts its states
-//! from 1.
+//! Sessions of the other robots. Each run of a robot's program is a session, which has a random number and counts its
+//! states from 1.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
-/// Time after the last state of a session before which no other session of the robot is accepted. A robot repeats its
-/// state every half second, however long its turns are.
+/// Time since the last state of a session during which no other session of the robot is accepted. A robot repeats its
+/// state every half second, regardless of the duration of its turns.
 const LIVES: Duration = Duration::from_secs(2);
-/// Maximum number of ended sessions of a robot that are remembered.
+/// Maximum number of ended sessions of a robot that are kept.
 const OVER: usize = 256;
 
-/// The sessions of all other robots.
+/// Sessions of all other robots.
 #[derive(Debug, Default)]
 pub(super) struct Sessions(BTreeMap<String, Session>);
 
@@ -20,9 +20,9 @@ struct Session {
     session: u64,
     /// Number of the newest state.
     number: u64,
-    /// Time at which a state last arrived, whether new or repeated.
+    /// Arrival time of the last state, new or repeated.
     at: Instant,
-    /// Sessions of the robot that are over.
+    /// Ended sessions of the robot.
     over: VecDeque<u64>,
 }
 
@@ -32,12 +32,11 @@ impl Sessions {
         self.0.get(robot).map(|known| known.session)
     }
 
-    /// Takes the session and the number of a robot's state that has arrived at time `now`; returns `true` if the state
-    /// is newer than all earlier ones of the robot.
+    /// Processes the session and the number of a state of a robot that has arrived at time `now`; returns `true` if the
+    /// state is newer than all earlier states of the robot.
     ///
     /// # Errors
-    /// Returns the end of a sentence if the state belongs to a session that is over, or to another robot with the same
-    /// name.
+    /// Returns the end of a sentence if the state belongs to an ended session, or to another robot with the same name.
     pub(super) fn take(&mut self, robot: &str, (session, number): (u64, u64), now: Instant) -> Result<bool, String> {
         let Some(known) = self.0.get_mut(robot) else {
             self.0.insert(robot.to_owned(), Session { session, number, at: now, over: VecDeque::new() });
@@ -48,7 +47,7 @@ impl Sessions {
             (known.number, known.at) = (known.number.max(number), now);
             return Ok(is_newer);
         }
-        // Somebody may have recorded a session that is over: it must not take the place of the current one.
+        // The state may be a replay of an ended session, which must not replace the current one.
         if known.over.contains(&session) {
             return Err(format!(
                 "another run of `{robot}` has taken its place: give each robot its own name, or start this one again"
@@ -87,7 +86,7 @@ mod tests {
         };
         assert_eq!([take(1, 5, 0), take(1, 6, 100), take(1, 4, 200)], [Ok(true), Ok(true), Ok(false)]);
         assert_eq!(take(2, 1, 2_100).unwrap_err(), TWO);
-        // A program that was started again counts from 1.
+        // A program that was restarted counts from 1 again.
         assert_eq!(take(2, 1, 2_200), Ok(true));
         assert_eq!([take(1, 7, 2_300).unwrap_err(), take(1, 8, 9_000).unwrap_err()], [OVER, OVER]);
         assert_eq!(take(2, 2, 9_100), Ok(true));

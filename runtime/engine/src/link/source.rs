@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 use super::frame::Challenge;
 use super::lag::Lag;
 
-/// Maximum number of states that a source may send in a second: twice as many as a sender sends.
+/// Maximum number of states per second from a source: twice as many as a sender sends.
 const STATES: u32 = 2000;
-/// Maximum number of letters that a source may send in a second. A sender keeps fewer letters, all of which it may send
+/// Maximum number of letters per second from a source. A sender keeps fewer letters than this, and may send all of them
 /// at once on a new connection.
 const LETTERS: u32 = 40;
 
@@ -24,14 +24,14 @@ pub struct Source {
 }
 
 impl Source {
-    /// Returns a new connection, whose frames must have a proof for this challenge.
+    /// Returns the source for a new connection, on which each frame needs a proof for this challenge.
     pub(super) fn of_connection(challenge: Challenge) -> Self {
         Self { challenge, robot: None, lag: Lag::default(), second: Instant::now(), states: 0, letters: 0 }
     }
 
-    /// Returns the source of the frames of a robot on a medium without connections. The source also accepts frames that
-    /// were recorded before this run, unless a newer session of the robot is known; repeating the frames of a session
-    /// keeps the session alive.
+    /// Returns the source for the frames of a robot on a medium without connections. It cannot detect replayed frames
+    /// of a session from before this run, unless a newer session of the robot is known; replaying the frames of a
+    /// session keeps the session alive.
     #[must_use]
     pub fn without_connection(robot: &str) -> Self {
         Self { robot: Some(robot.to_owned()), ..Self::of_connection(Challenge::NONE) }
@@ -63,7 +63,7 @@ impl Source {
         if self.letters > LETTERS { Err(format!("it sends more than {LETTERS} letters a second")) } else { Ok(()) }
     }
 
-    /// Resets the counts once a second has passed.
+    /// Resets the counts at the end of each second.
     fn tick(&mut self, now: Instant) {
         if now.saturating_duration_since(self.second) >= Duration::from_secs(1) {
             (self.second, self.states, self.letters) = (now, 0, 0);

@@ -1,4 +1,4 @@
-//! The state that a robot sends each turn.
+//! The state that a robot sends after each turn.
 
 use std::sync::Arc;
 
@@ -13,16 +13,15 @@ pub struct State {
     pub name: String,
     /// Session of the robot: a random number for its run, 0 if all robots run in one process.
     pub session: u64,
-    /// Number of the state, from 1: of two states of a session, the one with the higher number was sent later.
+    /// Number of the state, from 1: within a session, a state with a higher number was sent later.
     pub number: u64,
-    /// Age of the state when it is received, without the minimum transmission time of its source, which is not known.
+    /// Age of the state on arrival, without the minimum transmission time of its source, which is unknown.
     pub age: Nanos,
-    /// Pose by odometry, in the axes that all robots share.
+    /// Pose by odometry, in the coordinates that all robots share.
     pub pose: Pose,
     /// Measured velocities.
     pub velocity: Twist,
-    /// For each other robot, the number of scopes that the robot's plan has entered and that have a `rendezvous` with
-    /// the other robot.
+    /// For each other robot, the number of scopes entered by the plan that have a `rendezvous` with that robot.
     pub rounds: Vec<(String, u64)>,
     /// Number of the atom that the robot's plan runs, as in [`PeerState::atom`](mdle_runtime::PeerState::atom).
     pub atom: u64,
@@ -35,15 +34,15 @@ pub struct State {
 pub struct SharedValue {
     /// Name of the attribute on the robot that publishes it.
     pub name: AttributeName,
-    /// The value, of a kind that plans read as a number.
+    /// The value, of a kind that plans can read as a number.
     pub value: Value,
-    /// Age of the value when the state was measured.
+    /// Age of the value at the time when the state was measured.
     pub age: Nanos,
 }
 
 impl SharedValue {
-    /// Returns the name that the attribute has on other robots, where the name of its module is preceded by the name of
-    /// the robot that shares it.
+    /// Returns the name of the attribute on other robots: its module's name, preceded by the name of the robot that
+    /// shares it, and its own name.
     #[must_use]
     pub fn name_from(&self, robot: &str) -> AttributeName {
         let AttributeName { module, attribute } = &self.name;
@@ -52,7 +51,7 @@ impl SharedValue {
 }
 
 impl State {
-    /// Returns a state of the robot of this name, at the origin.
+    /// Returns a state of the robot `name` at the origin.
     #[cfg(test)]
     pub(crate) fn of(name: &str, number: u64) -> Self {
         Self {
@@ -68,13 +67,13 @@ impl State {
         }
     }
 
-    /// Returns `true` if this state is newer than `known`, a state of the same robot that arrived before.
+    /// Returns `true` if this state is newer than `known`, an earlier state of the same robot.
     pub(super) fn replaces(&self, known: &Self) -> bool {
-        // A program that was started again counts from 1.
+        // A program that was restarted counts from 1 again.
         self.session != known.session || self.number > known.number
     }
 
-    /// Returns the number of scopes that the plan has entered and that have a `rendezvous` with the robot `robot`.
+    /// Returns the number of scopes entered by the plan that have a `rendezvous` with the robot `robot`.
     #[must_use]
     pub fn rounds_with(&self, robot: &str) -> u64 {
         self.rounds.iter().find(|(name, _)| name == robot).map_or(0, |(_, count)| *count)

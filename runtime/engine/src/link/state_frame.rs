@@ -1,4 +1,4 @@
-//! A state in binary form (docs/src/reference/interfaces.md, 6.5).
+//! States in binary form (docs/src/reference/interfaces.md, 6.5).
 
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, PEERS, Pose, Radians, RadiansPerSecond, Twist};
 
@@ -7,9 +7,9 @@ use super::frame::{Challenge, Draft, Key, Refused, Times, opened};
 use super::{SharedValue, State};
 use crate::attribute::{AttributeKind, AttributeName, Value};
 
-/// First bytes of a state's frame.
+/// Magic number of a state's frame.
 const MAGIC: [u8; 4] = *b"MDLe";
-/// Maximum length of a frame, in bytes, without the four bytes of the length.
+/// Maximum length of a state's frame, in bytes, without the four bytes of the length.
 pub(super) const LONGEST: usize = 8192;
 /// Maximum number of attributes in a state.
 pub(super) const ATTRIBUTES: usize = 40;
@@ -17,7 +17,7 @@ pub(super) const ATTRIBUTES: usize = 40;
 const FARTHEST: f64 = 1e6;
 const FASTEST: f64 = 1e3;
 
-/// Returns the draft of a state with these times. Attributes whose names do not fit are left out.
+/// Returns the draft of a state with these times. Attributes whose names do not fit are omitted.
 pub(super) fn written(state: &State, times: Times, key: &Key) -> Draft {
     let mut body = Vec::with_capacity(256);
     put_name(&mut body, &state.name);
@@ -45,21 +45,21 @@ pub(super) fn written(state: &State, times: Times, key: &Key) -> Draft {
     Draft::new(MAGIC, Some(times), body, key)
 }
 
-/// Returns `true` if the name of an attribute can be in a frame.
+/// Returns `true` if an attribute's name fits into a frame.
 pub(super) fn has_fitting_name(SharedValue { name, .. }: &SharedValue) -> bool {
     fits(&name.module) && fits(&name.attribute)
 }
 
-/// Reads the frame of a state, without its length. Returns the state, with its age when the frame was written, and the
+/// Parses the frame of a state, without its length. Returns the state with its age when the frame was written, and the
 /// time of the sender's session at which the frame was written.
 ///
 /// # Errors
-/// Fails if the bytes are not a frame of a robot with this key, for this challenge.
+/// Fails if the bytes are not the frame of a state, or if its proof is not for this key and this challenge.
 pub(super) fn read(frame: &[u8], key: &Key, challenge: &Challenge) -> Result<(State, Nanos), Refused> {
     let (state, written) = state(&mut opened(MAGIC, frame, key, challenge)?).ok_or(Refused::Garbage)?;
     let Pose { x, y, theta } = state.pose;
     let Twist { v, omega } = state.velocity;
-    // Larger numbers would overflow in the laws that reckon with them.
+    // Larger numbers would cause overflows in laws that use them.
     if [x.0, y.0].iter().any(|place| place.abs() > FARTHEST) || [v.0, omega.0].iter().any(|speed| speed.abs() > FASTEST)
     {
         return Err(Refused::Impossible);
@@ -83,7 +83,7 @@ fn state(from: &mut Bytes<'_>) -> Option<(State, Nanos)> {
     from.is_empty().then_some((state, written))
 }
 
-/// Reads the value of an attribute; `None` if it is not a number or is NaN.
+/// Reads an attribute with its value; `None` if the value is not a number or is NaN.
 fn attribute(from: &mut Bytes<'_>) -> Option<SharedValue> {
     let name = AttributeName::new(&from.name()?, &from.name()?);
     let [kind] = from.take()?;
@@ -98,7 +98,7 @@ mod tests {
     use crate::link::bytes::NAME;
     use crate::link::frame::VERSION;
 
-    /// Times of a state that is written at 15 ns of the session, and is 3 ns old.
+    /// Times of a state that is written 15 ns after the start of the session and is 3 ns old.
     const TIMES: Times = Times { begun: Nanos(5), measured: Nanos(17) };
     const WRITTEN: Nanos = Nanos(20);
 
@@ -124,7 +124,7 @@ mod tests {
         written(state, TIMES, key).frame_at(&Challenge::NONE, WRITTEN)[4..].to_vec()
     }
 
-    /// Reads the frame of a state that another robot has written.
+    /// Writes and reads the frame of a state, as if another robot had sent it.
     fn taken(state: &State) -> Result<State, Refused> {
         let key = Key::of("a key");
         read(&frame(state, &key), &key, &Challenge::NONE).map(|(state, _)| state)

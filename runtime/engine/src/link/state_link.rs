@@ -1,4 +1,4 @@
-//! The state link of one robot, which collects the states of other robots and sends the robot's own.
+//! The state link of one robot: collects the states of other robots, and sends the robot's own state.
 
 use mdle_host::Transitions;
 use mdle_runtime::{Links, Machine, Meters, ModuleRead, Nanos, Output, Peer, PeerState, Plan, Pose, Radians};
@@ -16,16 +16,16 @@ use crate::plans::{EngineAlphabet, Plans, When};
 pub struct StateLink {
     link: Box<dyn Link>,
     name: String,
-    /// Pose at which the robot's odometry began, in the axes that all robots share.
+    /// Pose of the robot at which its odometry is zero, in the coordinates that all robots share.
     start: Pose,
-    /// Number of the state that was sent last.
+    /// Number of the last state that was sent.
     sent: u64,
     /// The newest state of each other robot.
     known: Vec<Known>,
     rounds: Rounds,
     /// Modules whose attributes the robot shares, each given as a read of its `age`.
     shares: &'static [ModuleRead],
-    /// Names of the attributes of other robots.
+    /// Names of the attributes that other robots share.
     foreign: ForeignNames,
     orders: Orders,
 }
@@ -33,14 +33,15 @@ pub struct StateLink {
 /// The newest state of another robot.
 struct Known {
     state: State,
-    /// Time at which the state arrived.
+    /// Arrival time of the state.
     at: Nanos,
     /// `true` until the attributes of the state are on the board.
     is_new: bool,
 }
 
 impl StateLink {
-    /// Returns the link of the robot of this name, whose odometry begins at `start` in the axes that all robots share.
+    /// Returns the link of the robot `name`, which has zero odometry at the pose `start` in the coordinates that all
+    /// robots share.
     #[must_use]
     pub fn new(link: Box<dyn Link>, name: &str, start: Pose) -> Self {
         Self {
@@ -56,10 +57,10 @@ impl StateLink {
         }
     }
 
-    /// Shares the attributes of these modules with the other robots, as far as plans can read them as numbers.
+    /// Shares the attributes of these modules with the other robots, if plans can read them as numbers.
     #[must_use]
     pub fn sharing(self, modules: &[String]) -> Self {
-        // As the names of plans, they last as long as the program.
+        // Like the names of plans, the names exist as long as the program.
         let read = |module: &String| ModuleRead { module: module.clone().leak(), attribute: AGE, unit: None };
         let shares: Vec<_> = modules.iter().map(read).collect();
         Self { shares: shares.leak(), ..self }
@@ -77,7 +78,7 @@ impl StateLink {
         &self.orders.sends_to
     }
 
-    /// Sends a plan, given by its name, its text and the moment at which it is to take over, to the robot `to`.
+    /// Sends a plan, given by its name, its text and the moment at which it takes over, to the robot `to`.
     ///
     /// # Errors
     /// Returns a sentence with the reason if the plan cannot be sent.
@@ -85,13 +86,13 @@ impl StateLink {
         self.orders.send(&mut *self.link, to, plan, now)
     }
 
-    /// Begins to compile the plans that have arrived. Returns messages to the operator about refused plans, and about
+    /// Starts to compile the plans that have arrived. Returns messages to the operator about refused plans and about
     /// answers of other robots.
     pub(crate) fn take_plans<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>, now: Nanos) -> Vec<String> {
         self.orders.take(&mut *self.link, plans, now)
     }
 
-    /// Answers the plans about which there are new events; returns messages to the operator about them.
+    /// Answers the plans that have new events; returns messages to the operator about these plans.
     pub(crate) fn answer_plans<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>, now: Nanos) -> Vec<String> {
         self.orders.decide(&mut *self.link, plans, now)
     }
@@ -101,12 +102,12 @@ impl StateLink {
         self.shares
     }
 
-    /// Takes the states that have arrived by time `now`, and puts the attributes that they contain on the board.
-    /// Returns a message, only once, about each attribute that is refused.
+    /// Takes the states that have arrived by time `now`, and puts their attributes on the board. Returns a message for
+    /// each attribute that is refused, but only once.
     pub(crate) fn receive(&mut self, now: Nanos, board: &mut dyn Foreign) -> Vec<String> {
         let Self { link, known, name, foreign, .. } = self;
         link.receive(now, &mut |state| match known.iter_mut().find(|known| known.state.name == state.name) {
-            // What was sent later counts, in whatever order it arrives.
+            // The state that was sent last is kept, regardless of the order of arrival.
             Some(place) if state.replaces(&place.state) => *place = Known { state, at: now, is_new: true },
             Some(_) => {}
             None if state.name == *name => {}
@@ -120,7 +121,7 @@ impl StateLink {
         messages
     }
 
-    /// Returns the known states of the robots with these names, in the turn at time `now`.
+    /// Returns the known states of the robots with these names in the turn at time `now`.
     pub(crate) fn sense(&self, robots: impl Iterator<Item = &'static str>, now: Nanos) -> Links {
         let mut links = Links::NONE;
         for name in robots {
@@ -131,7 +132,7 @@ impl StateLink {
         links
     }
 
-    /// Sends the state of the robot, and what its modules have published, after a turn of its plan at time `now`.
+    /// Sends the state of the robot and the shared attributes after a turn of its plan at time `now`.
     pub(crate) fn tell<P: Plan>(
         &mut self,
         y: &P::Output,
@@ -174,7 +175,7 @@ impl StateLink {
         self.link.messages(say);
     }
 
-    /// Returns the known state of the robot of this name.
+    /// Returns the known state of the robot with this name.
     fn peer(&self, robot: &'static str, now: Nanos) -> Peer {
         let known = self.known.iter().find(|known| known.state.name == robot);
         let state = known.map(|Known { state, at, .. }| PeerState {
@@ -188,7 +189,7 @@ impl StateLink {
     }
 }
 
-/// Converts a pose of the robot's own odometry to the axes that all robots share.
+/// Converts a pose from the robot's own odometry coordinates to the coordinates that all robots share.
 fn outward(start: &Pose, own: &Pose) -> Pose {
     let (sin, cos) = (libm::sin(start.theta.0), libm::cos(start.theta.0));
     let (x, y) = (own.x.0, own.y.0);
@@ -199,7 +200,7 @@ fn outward(start: &Pose, own: &Pose) -> Pose {
     }
 }
 
-/// Converts a pose in the shared axes to the axes of the robot's own odometry.
+/// Converts a pose from the shared coordinates to the robot's own odometry coordinates.
 fn inward(start: &Pose, shared: &Pose) -> Pose {
     let (sin, cos) = (libm::sin(start.theta.0), libm::cos(start.theta.0));
     let (x, y) = (shared.x.0 - start.x.0, shared.y.0 - start.y.0);

@@ -1,9 +1,9 @@
-//! The link over TCP between processes and machines. The robot's turn only hands over a state and takes states that
-//! have arrived; threads do all work that may wait.
+//! The link over TCP between processes and machines. A robot's turn only passes on a state and takes the states that
+//! have arrived; separate threads do everything that may block.
 //!
-//! A robot connects to each of its peers to send, and listens to receive. Each peer has a sender of its own, which
-//! writes only the newest state, but every letter. So a peer that reads slowly or never does not delay the others. The
-//! receiver of a connection first writes a challenge, for which each frame must have a proof.
+//! A robot connects to each of its peers to send, and accepts connections to receive. Each peer has its own sender,
+//! which sends only the newest state, but every letter. So a peer that reads slowly or never does not delay the others.
+//! The receiver of a connection first sends a challenge, for which each frame needs a proof.
 
 #[cfg(test)]
 mod answer_tests;
@@ -37,19 +37,19 @@ pub struct TcpSettings {
     pub link: LinkSettings,
     /// Address at which the robot listens.
     pub listen: SocketAddr,
-    /// Address of each peer, in the order of their names.
+    /// Address of each peer, in the order of the peers' names.
     pub addresses: Vec<SocketAddr>,
 }
 
 /// One robot's end of a state link over TCP.
 pub struct Tcp {
     endpoint: Arc<Endpoint>,
-    /// Name of each peer, with the newest state and the letters for it.
+    /// Newest state and letters for each peer, by the peer's name.
     outboxes: Vec<(String, Arc<Outbox>)>,
 }
 
 impl Tcp {
-    /// Begins to listen, and to connect to the peers.
+    /// Starts to listen, and to connect to the peers.
     ///
     /// # Errors
     /// Fails with a sentence if the robot cannot listen at the address, or if the system cannot create the threads.
@@ -113,7 +113,7 @@ impl Link for Tcp {
 
 impl Drop for Tcp {
     fn drop(&mut self) {
-        // The threads look at it several times a second; nobody waits for them.
+        // The threads check this several times a second; dropping the link does not wait for them.
         self.endpoint.end();
         self.outboxes.iter().for_each(|(_, outbox)| outbox.wake());
     }

@@ -1,5 +1,5 @@
-//! Background modules, which the paper calls unregistered: they run on threads of their own, and exchange
-//! values only at turn breaks (paper, section III-E).
+//! Background modules, which the paper calls unregistered: they run on their own threads, and exchange values only at
+//! turn breaks (paper, section III-E).
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -9,23 +9,23 @@ use mdle_runtime::Nanos;
 use super::{Fault, Ports};
 use crate::attribute::{Attribute, In, Out, Reading, Value};
 
-/// Number of equal parts into which a break divides its maximum wait for the values of a module.
+/// Number of checks into which a turn break divides its maximum wait for a module's values.
 const LOOKS: u32 = 50;
 
 /// A module that runs in the background.
 pub trait Background: Send + 'static {
-    /// Runs on a thread of its own until an exchange returns [`Stopped`]. When it returns, the module has ended.
+    /// Runs on its own thread until an exchange returns [`Stopped`]. The module ends when this function returns.
     ///
     /// # Errors
     /// Returns the reason why the module cannot continue, for the operator.
     fn run(self: Box<Self>, exchange: Exchange) -> Result<(), Fault>;
 }
 
-/// Signal that the module is to end, because the engine ends or the module is unloaded.
+/// Signal that the module has to end, because the engine ends or the module is unloaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stopped;
 
-/// Access of a background module to the turn breaks, at which it exchanges values.
+/// Connection of a background module to the turn breaks, at which it exchanges values.
 #[derive(Debug)]
 pub struct Exchange {
     gate: Arc<Gate>,
@@ -37,25 +37,25 @@ impl Exchange {
         Self { gate, ports }
     }
 
-    /// Calls `fill`, which offers values, and waits for the break that publishes them. Afterwards, the values that the
-    /// module reads are as of that break.
+    /// Calls `fill`, which offers values, and waits for the turn break that publishes them. Afterwards, the values that
+    /// the module reads are those of that turn break.
     ///
     /// # Errors
-    /// Fails if the module is to end.
+    /// Fails if the module has to end.
     pub fn exchange<R>(&mut self, fill: impl FnOnce(&mut Offer<'_>) -> R) -> Result<R, Stopped> {
-        // The gate is not locked meanwhile: code that hangs or panics here hinders nobody.
+        // The gate is not locked during the call: code that hangs or panics here blocks nothing else.
         let result = fill(&mut Offer(&mut self.ports));
         self.ports = self.gate.hand_over(std::mem::take(&mut self.ports))?;
         Ok(result)
     }
 
-    /// Returns the time of the last break, and the values that the module reads as of that break, in the order of its
-    /// declaration.
+    /// Returns the time of the last turn break, and the values that the module reads as of that turn break, in the
+    /// order of its declaration.
     pub(crate) fn readings(&self) -> (Nanos, &[Option<Reading>]) {
         (self.ports.now, &self.ports.ins)
     }
 
-    /// Returns `true` once the module is to end, for code that waits for something other than a break.
+    /// Returns `true` once the module has to end. For code that waits for something other than a turn break.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.gate.lock().is_stopped
@@ -67,34 +67,33 @@ impl Exchange {
 pub struct Offer<'o>(&'o mut Ports);
 
 impl Offer<'_> {
-    /// Returns the time, on the engine's clock, of the turn that ended with the last break; zero before the
-    /// first break.
+    /// Returns the time, on the engine's clock, of the turn that ended with the last turn break; zero before the first
+    /// turn break.
     #[must_use]
     pub fn now(&self) -> Nanos {
         self.0.now
     }
 
-    /// Returns the value of an attribute as of the last exchange, or the value of a setting; `None` while no module has
-    /// published the attribute, and once its module is unloaded.
+    /// Returns the value of an attribute as of the last exchange, or the value of a setting. Returns `None` before a
+    /// module has published the attribute, and after its module was unloaded.
     #[must_use]
     pub fn get<T: Attribute>(&self, attribute: In<T>) -> Option<T> {
         self.0.get(attribute)
     }
 
-    /// Returns the value that [`Offer::get`] returns, with the time at which it was published; a setting has the time
-    /// at which it was changed.
+    /// Returns the value that [`Offer::get`] returns, with the time at which it was published; for a setting, with the
+    /// time at which it was changed.
     #[must_use]
     pub fn reading<T>(&self, attribute: In<T>) -> Option<&Reading> {
         self.0.reading(attribute)
     }
 
-    /// Publishes a value at the next break; a value that contains NaN is not published.
+    /// Publishes a value at the next turn break; a value that contains NaN is not published.
     pub fn publish<T: Attribute>(&mut self, attribute: Out<T>, value: T) {
         self.0.publish(attribute, value);
     }
 
-    /// Publishes a value of the attribute at this position in the declaration; the value must have the
-    /// attribute's kind.
+    /// Publishes a value of the attribute at this index in the declaration; the value must have the attribute's kind.
     pub(crate) fn put(&mut self, place: usize, value: Value) {
         if let Some(out) = self.0.outs.get_mut(place) {
             *out = Some(value);
@@ -113,30 +112,30 @@ pub(crate) struct Gate {
 struct Meeting {
     /// `true` once the module may run.
     has_begun: bool,
-    /// Values of a module that waits for a break; `None` while none waits.
+    /// Values of a module that waits for a turn break; `None` if the module does not wait.
     offered: Option<Ports>,
-    /// Values that a break has returned to the module; `None` once the module has taken them.
+    /// Values that a turn break has returned to the module; `None` once the module has taken them.
     returned: Option<Ports>,
     is_stopped: bool,
-    /// End of the module's thread, once it has ended and until a break has taken it.
+    /// Reason why the module's thread has ended; `None` before the end, and once a turn break has taken the reason.
     ended: Option<ThreadEnd>,
     /// `true` once the module's thread has ended.
     has_ended: bool,
 }
 
-/// Way in which the thread of a background module ended.
+/// Reason why the thread of a background module has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum ThreadEnd {
-    /// The module's code returned: the module was to end, or has nothing left to do.
+    /// The module's code returned: the module was asked to end, or has nothing left to do.
     Returned,
-    /// The module cannot continue: the reason, as a sentence.
+    /// The module cannot continue; contains the reason as a sentence.
     Failed(String),
-    /// The module's code panicked: the message of the panic.
+    /// The module's code panicked; contains the panic message.
     Panicked(String),
 }
 
 impl Meeting {
-    /// Returns `true` while the module neither waits for a break nor has ended.
+    /// Returns `true` while the module neither waits for a turn break nor has ended.
     const fn is_awaited(&self) -> bool {
         self.offered.is_none() && !self.has_ended
     }
@@ -151,7 +150,7 @@ impl Gate {
         self.changed.wait(meeting).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits, on the module's thread, until the module may run; returns `false` if it never may.
+    /// Waits, on the module's thread, until the module may run; returns `false` if it was stopped before.
     pub(crate) fn wait_for_begin(&self) -> bool {
         let mut meeting = self.lock();
         while !meeting.has_begun && !meeting.is_stopped {
@@ -160,7 +159,7 @@ impl Gate {
         !meeting.is_stopped
     }
 
-    /// Offers values, on the module's thread, and waits for the break that takes them.
+    /// Offers values, on the module's thread, and waits for the turn break that takes them.
     fn hand_over(&self, ports: Ports) -> Result<Ports, Stopped> {
         let mut meeting = self.lock();
         meeting.offered = Some(ports);
@@ -190,21 +189,21 @@ impl Gate {
         self.changed.notify_all();
     }
 
-    /// Takes the values of a module that waits for a break; `None` if it does not wait. The call does not block: a
-    /// module that holds the lock is served at the next break.
+    /// Takes the values of a module that waits for a turn break; `None` if the module does not wait. Never blocks: if
+    /// the module holds the lock, it is served at the next turn break.
     pub(crate) fn take_offer(&self) -> Option<Ports> {
         self.meeting.try_lock().ok()?.offered.take()
     }
 
-    /// Returns the values to the module at the end of a break; the module then continues.
+    /// Returns the values to the module at the end of a turn break; the module then continues.
     pub(crate) fn give_back(&self, ports: Ports) {
         self.lock().returned = Some(ports);
         self.changed.notify_all();
     }
 
-    /// Waits until the module waits for a break or has ended; returns `false` if neither happens within `patience`.
-    /// Each of the [`LOOKS`] checks counts as an equal part of this time, even if this thread is delayed, so that no
-    /// module is given up because the process was stopped or the machine was busy.
+    /// Waits until the module waits for a turn break or has ended; returns `false` if neither happens within
+    /// `patience`. Each of the [`LOOKS`] checks counts as an equal part of this time, even if this thread is delayed.
+    /// So no module is given up because the process was suspended or the machine was busy.
     pub(crate) fn wait_for_offer(&self, patience: Duration) -> bool {
         let mut meeting = self.lock();
         for _ in 0..LOOKS {
@@ -217,19 +216,19 @@ impl Gate {
         false
     }
 
-    /// Returns, only once, the way in which the module's thread ended. Returns `None` before the thread has ended, in
-    /// later calls, and while the module holds the lock.
+    /// Returns the reason why the module's thread has ended, only once. Returns `None` before the end, in later calls,
+    /// and while the module holds the lock.
     pub(crate) fn take_end(&self) -> Option<ThreadEnd> {
         self.meeting.try_lock().ok()?.ended.take()
     }
 
-    /// Asks the module to end; its exchanges fail from now on.
+    /// Asks the module to end; all further exchanges fail.
     pub(crate) fn stop(&self) {
         self.lock().is_stopped = true;
         self.changed.notify_all();
     }
 
-    /// Waits for at most this time until the module's thread has ended.
+    /// Waits for the module's thread to end, at most for this time.
     pub(crate) fn wait_for_end(&self, patience: Duration) {
         let lasts = |meeting: &mut Meeting| !meeting.has_ended;
         drop(self.changed.wait_timeout_while(self.lock(), patience, lasts));

@@ -1,4 +1,4 @@
-//! Modules that have been created and can be loaded at a turn break.
+//! Modules that were created and can be loaded at a turn break.
 
 use std::any::Any;
 use std::fmt;
@@ -11,12 +11,12 @@ use std::time::Duration;
 use super::{Background, Declare, Declared, Exchange, Fault, Gate, Module, Ports, ThreadEnd};
 use crate::attribute::{AttributeKind, AttributeName, is_name};
 
-/// Name of the module that makes the turns of plans; no other module may have it.
+/// Name of the module that makes the turns of plans; reserved.
 pub const PLAN: &str = "mdle";
-/// Name under which the robot is in the tree of attributes, beside the modules; no module may have this name.
+/// Name of the robot in the tree of attributes, where it is listed beside the modules; reserved.
 pub(crate) const ROBOT: &str = "robot";
 
-/// A module that has been created and not yet loaded. The robot's turns do not wait while it is being created.
+/// A module that was created but is not loaded yet. The robot's turns do not wait while a module is created.
 pub struct Candidate<Y> {
     pub(crate) name: Arc<str>,
     pub(crate) declared: Declared,
@@ -27,12 +27,12 @@ pub struct Candidate<Y> {
 pub(crate) enum Form<Y> {
     /// A module that makes a turn in every turn of the engine.
     Registered(Box<dyn Module<Y>>, Ports),
-    /// A module with a thread of its own.
+    /// A background module with its own thread.
     Background(ThreadGate),
 }
 
-/// Gate of a background module's thread, and the maximum wait for the end of the thread. Dropping the gate asks the
-/// thread to end, and waits for this.
+/// Gate of a background module's thread, and the maximum wait for the thread to end. Dropping the gate asks the thread
+/// to end, and waits for it.
 #[derive(Debug)]
 pub(crate) struct ThreadGate(Arc<Gate>, Duration);
 
@@ -58,25 +58,26 @@ impl Drop for ThreadGate {
 pub enum Refusal {
     /// Another loaded module has this name.
     NameTaken(String),
-    /// No module may have this name.
+    /// The name is not a valid name of a module.
     BadName(String),
     /// The name is reserved for a part of the engine.
     Reserved(String),
     /// No module of this name is loaded.
     Unknown(String),
-    /// The module of this name makes no further turn.
+    /// The module with this name will make no further turn.
     Over(String),
-    /// A module has no setting of this name: the names of the module and the setting.
+    /// A module has no such setting; contains the names of the module and of the setting.
     NoSetting(String, String),
-    /// A setting has another kind than the value: the path of the setting, its kind, and the kind of the value.
+    /// A setting has another kind than the value; contains the path of the setting, its kind, and the kind of the
+    /// value.
     OtherSetting(AttributeName, AttributeKind, AttributeKind),
-    /// The value for a setting is NaN: the path of the setting.
+    /// The value for a setting is NaN; contains the path of the setting.
     NotANumber(AttributeName),
-    /// The declaration of the module is invalid: the name of the module, and a sentence.
+    /// The declaration of the module is invalid; contains the name of the module, and a sentence.
     Declaration(String, String),
-    /// The function that creates the module panicked: the name of the module, and the message.
+    /// The function that creates the module panicked; contains the name of the module, and the panic message.
     Panicked(String, String),
-    /// A module reads an attribute as another kind than the attribute has.
+    /// A module expects another kind of an attribute than is published.
     OtherKind {
         /// Name of the module that reads the attribute.
         reader: String,
@@ -84,24 +85,24 @@ pub enum Refusal {
         name: AttributeName,
         /// Kind that the reader expects.
         read: AttributeKind,
-        /// Kind of the attribute as published.
+        /// Kind in which the attribute is published.
         published: AttributeKind,
     },
-    /// Another robot publishes an attribute as another kind than before: the path of the attribute, the kind
-    /// before, and the kind now.
+    /// Another robot has changed the kind of an attribute; contains the path of the attribute, the old kind, and the
+    /// new kind.
     ChangedKind(AttributeName, AttributeKind, AttributeKind),
-    /// Other robots share too many attributes: the maximum.
+    /// Other robots share too many attributes; contains the maximum number.
     TooMany(usize),
-    /// The system could not create a thread for the module: the name of the module, and the system's message.
+    /// The system could not create a thread for the module; contains the name of the module, and the system's message.
     NoThread(String, String),
-    /// The child process of the module breaks the protocol: the name of the module, and a sentence.
+    /// The child process of the module violates the protocol; contains the name of the module, and a sentence.
     Process(String, String),
     /// The run was asked to end while the module was being created.
     Ended,
 }
 
 impl<Y> Candidate<Y> {
-    /// Creates a registered module of this name.
+    /// Creates a registered module with this name.
     ///
     /// # Errors
     /// Fails if the name or the declaration is invalid, or if `make` panicked.
@@ -113,7 +114,7 @@ impl<Y> Candidate<Y> {
         Ok(Self { name: name.into(), declared, form: Form::Registered(Box::new(module), ports) })
     }
 
-    /// Creates a background module of this name. Its thread waits until the module is loaded.
+    /// Creates a background module with this name. Its thread waits until the module is loaded.
     ///
     /// # Errors
     /// Fails if the name or the declaration is invalid, if `make` panicked, or if the system cannot create the thread.
@@ -165,7 +166,7 @@ pub(crate) fn panicked(payload: Box<dyn Any + Send>) -> String {
         (None, Some(message)) => message.clone(),
         (None, None) => "no message".to_owned(),
     };
-    // A payload may panic once more when it is dropped.
+    // Dropping a payload may panic again.
     std::mem::forget(payload);
     message
 }

@@ -13,7 +13,7 @@ use crate::attribute::{AGE, Attribute, AttributeKind, AttributeName, In, Out, Re
 pub struct Declare {
     pub(crate) declared: Declared,
     pub(crate) ports: Ports,
-    /// First fault of the declaration, as a sentence; `None` if there is none.
+    /// First error in the declaration, as a sentence; `None` if there is none.
     pub(crate) fault: Option<String>,
 }
 
@@ -23,13 +23,13 @@ pub(crate) struct Declared {
     pub(crate) doc: &'static str,
     pub(crate) publishes: Vec<About>,
     pub(crate) reads: Vec<Source>,
-    /// Priority of the module: modules of higher priority begin their turns first.
+    /// Priority of the module: modules with higher priority begin their turns first.
     pub(crate) priority: i32,
     pub(crate) relevance: Relevance,
     pub(crate) latency: Nanos,
-    /// `true` if the first exchange is due at the first break, whatever the latency.
+    /// `true` if the first exchange is due at the first turn break, regardless of the latency.
     pub(crate) begins_at_once: bool,
-    /// Maximum time that the engine waits for the module's thread to end.
+    /// Maximum time for which the engine waits for the module's thread to end.
     pub(crate) farewell: Duration,
 }
 
@@ -58,20 +58,20 @@ pub struct About {
 /// Condition under which a module makes turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Relevance {
-    /// The module makes every turn.
+    /// The module makes a turn in every turn of the engine.
     #[default]
     Always,
-    /// The module makes turns while it is read by the active plan, by a plan that may become active, by a safety rule,
-    /// by another robot, or by a module that makes turns.
+    /// The module makes turns while the active plan, a plan that may become active, a safety rule, another robot, or a
+    /// module that makes turns reads it.
     WhenRead,
 }
 
-/// The values of a module: values to publish at the next break, and its copies of the attributes that it reads.
+/// Values of a module: values to publish at the next turn break, and copies of the attributes that the module reads.
 #[derive(Debug, Default)]
 pub(crate) struct Ports {
     pub(crate) outs: Vec<Option<Value>>,
     pub(crate) ins: Vec<Option<Reading>>,
-    /// Time of the last break, for a background module.
+    /// Time of the last turn break, for a background module.
     pub(crate) now: Nanos,
 }
 
@@ -92,14 +92,14 @@ impl Ports {
 }
 
 impl Declare {
-    /// Declares an attribute that the module publishes. The name must be a valid name of MDLe, and no other attribute
-    /// or setting of the module may have it.
+    /// Declares an attribute that the module publishes. The name must be a valid MDLe name, and differ from all other
+    /// attributes and settings of the module.
     pub fn publishes<T: Attribute>(&mut self, name: &str) -> Out<T> {
         Out::new(self.publishes_as(name, T::KIND, None))
     }
 
-    /// Declares an attribute of this kind, and returns its position. People read the attribute in `unit`, by
-    /// default the SI unit.
+    /// Declares an attribute of this kind, and returns its index. Users read the attribute in `unit`, or in the SI unit
+    /// if `unit` is `None`.
     pub(crate) fn publishes_as(&mut self, name: &str, kind: AttributeKind, unit: Option<Unit>) -> usize {
         let about = self.about(name, kind);
         self.declared.publishes.push(About { unit: unit.or(about.unit), ..about });
@@ -107,13 +107,13 @@ impl Declare {
         self.ports.outs.len().saturating_sub(1)
     }
 
-    /// Declares an attribute of another module that this module reads. The other module may be loaded later, or
-    /// never. If it publishes the attribute with another kind, the module that is loaded last is refused.
+    /// Declares an attribute of another module that this module reads. The other module may be loaded later or never.
+    /// If the attribute is published with another kind, the module that is loaded last is refused.
     pub fn reads<T: Attribute>(&mut self, module: &str, attribute: &str) -> In<T> {
         In::new(self.reads_as(module, attribute, T::KIND))
     }
 
-    /// Declares an attribute of another module that this module reads as this kind, and returns its position.
+    /// Declares an attribute of another module that this module reads with this kind, and returns its index.
     pub(crate) fn reads_as(&mut self, module: &str, attribute: &str, kind: AttributeKind) -> usize {
         for name in [module, attribute] {
             self.check_name(name);
@@ -121,7 +121,7 @@ impl Declare {
         self.input(Source::Attribute(AttributeName::new(module, attribute), kind), None)
     }
 
-    /// Declares a setting of the module, which people can change, with its initial value.
+    /// Declares a setting of the module with its initial value; users can change the setting.
     pub fn setting<T: Attribute>(&mut self, name: &str, initial: T) -> In<T> {
         let about = self.about(name, T::KIND);
         let value = initial.into_value();
@@ -132,8 +132,8 @@ impl Declare {
         In::new(self.input(Source::Setting(about, reading.clone()), Some(reading)))
     }
 
-    /// Describes an attribute or a setting that was declared before: the unit in which people read and write it, empty
-    /// for the SI unit or a kind without units, and a sentence.
+    /// Describes an attribute or a setting that was declared before: the unit in which users read and write it (empty
+    /// for the SI unit, or for a kind without units), and a sentence.
     pub fn describe(&mut self, name: &str, unit: &str, doc: &'static str) {
         let known = self.declared.abouts_mut().find(|about| &*about.name == name);
         let Some(about) = known else {
@@ -158,8 +158,8 @@ impl Declare {
         self.declared.doc = doc;
     }
 
-    /// Sets the priority of the module, 0 by default: modules of higher priority begin their turns first. The
-    /// priority has no effect on results, except on which modules are late if there is too little time.
+    /// Sets the priority of the module, 0 by default. Modules with higher priority begin their turns first. If time is
+    /// too short, the priority decides which modules are late; it has no other effect on results.
     pub fn priority(&mut self, priority: i32) {
         self.declared.priority = priority;
     }
@@ -169,20 +169,20 @@ impl Declare {
         self.declared.relevance = relevance;
     }
 
-    /// Sets the time that a background module needs from one exchange to the next, 0 by default. In stepped time, the
-    /// module's next exchange is at the first break after this time has passed on the engine's clock, however fast the
-    /// computer is. A plan that reads the module waits for its first values longer by this time.
+    /// Sets the time that a background module needs for one exchange, 0 by default. In stepped time, the module's next
+    /// exchange is at the first turn break after this time has passed on the engine's clock, regardless of the
+    /// computer's speed. A plan that reads the module waits this much longer for the module's first values.
     pub fn latency(&mut self, latency: Nanos) {
         self.declared.latency = latency;
     }
 
-    /// Makes the first exchange due at the first break, whatever the latency. This exchange publishes nothing, and
-    /// supplies the values that the module reads.
+    /// Makes the first exchange due at the first turn break, regardless of the latency. The first exchange publishes
+    /// nothing, and supplies the values that the module reads.
     pub(crate) fn begins_at_once(&mut self) {
         self.declared.begins_at_once = true;
     }
 
-    /// Sets the maximum time that the engine waits for the module's thread to end, 0 by default.
+    /// Sets the maximum time for which the engine waits for the module's thread to end, 0 by default.
     pub(crate) fn farewell(&mut self, farewell: Duration) {
         self.declared.farewell = farewell;
     }
@@ -211,7 +211,7 @@ impl Declare {
         }
     }
 
-    /// Records the first fault.
+    /// Records an error, unless an earlier one is recorded.
     fn refuse(&mut self, sentence: String) {
         self.fault.get_or_insert(sentence);
     }
@@ -231,7 +231,7 @@ impl Declared {
         })
     }
 
-    /// Sets a setting; returns `false` if there is no such setting.
+    /// Changes a setting; returns `false` if there is no such setting.
     pub(crate) fn set(&mut self, name: &str, new: Reading) -> bool {
         let mut readings = self.reads.iter_mut().filter_map(|source| match source {
             Source::Setting(about, reading) if &*about.name == name => Some(reading),

@@ -1,4 +1,4 @@
-//! Tests of the state link of one robot.
+//! Tests the state link of one robot.
 
 use super::*;
 use crate::attribute::AttributeName;
@@ -18,7 +18,7 @@ fn poses_go_to_the_shared_axes_and_back() {
     assert!(near(&inward(&start, &shared), &pose(3.0, 0.5, 45.0)));
 }
 
-/// A link on which states arrive in this order, one at a time.
+/// A link on which these states arrive in this order, one at a time.
 struct Script(Vec<State>);
 
 impl Link for Script {
@@ -43,7 +43,7 @@ fn a_clock_that_jumps_reorders_no_states() {
     let restarted = State { session: 1, ..state(1, 9.0) };
     let script = Script(vec![state(5, 5.0), state(6, 6.0), state(4, 4.0), restarted]);
     let mut link = StateLink::new(Box::new(script), "bob", Pose::ORIGIN);
-    // An hour ahead, a minute back, and before the start of the clock that the others saw.
+    // The clock jumps an hour ahead, a minute back, and to a time before all earlier ones.
     let seen = [1, 3_600, 3_540, 0, 2].map(|seconds| {
         let now = Nanos(seconds * 1_000_000_000);
         link.receive(now, &mut Shared(Vec::new()));
@@ -53,7 +53,7 @@ fn a_clock_that_jumps_reorders_no_states() {
     assert_eq!(seen, [Some((5.0, 0)), Some((6.0, 0)), Some((6.0, 0)), Some((9.0, 0)), Some((9.0, 2_000_000_000))]);
 }
 
-/// Attributes that were put on a board, with the times of their publication.
+/// Attributes that were put on a board, with their publication times.
 struct Shared(Vec<(String, Value, u64)>);
 
 impl Foreign for Shared {
@@ -104,7 +104,7 @@ fn the_newest_state_counts_and_its_age_begins_when_it_arrives() {
     assert_eq!(board.0, [range(2.0, 8), range(3.0, 27)], "each value once, as old as it was when it was sent");
 }
 
-/// A board that takes no more than this number of attributes.
+/// A board that accepts at most this number of attributes.
 struct Full(usize);
 
 impl Foreign for Full {
@@ -114,7 +114,7 @@ impl Foreign for Full {
     }
 }
 
-/// Returns a state of this robot with these attributes.
+/// Returns a state of this robot that shares these attributes.
 fn sharing(robot: &str, number: u64, names: impl Iterator<Item = (String, String)>) -> State {
     let shared = |(module, attribute): (String, String)| SharedValue {
         name: AttributeName::new(&module, &attribute),

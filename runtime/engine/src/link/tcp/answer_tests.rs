@@ -1,4 +1,4 @@
-//! Tests of answers over TCP on this machine: plans that are refused on their arrival, and floods of answers.
+//! Tests answers over TCP on this machine: plans are refused on arrival, and floods of answers are rejected.
 
 use std::io::{Read as _, Write as _};
 
@@ -12,7 +12,7 @@ use crate::link::letter_frame::{self, Envelope};
 use crate::link::state_frame::written;
 use crate::plans::When;
 
-/// Returns the frame of a letter of `ada` to `bob`, posted at this time in seconds of her session.
+/// Returns the frame of a letter from `ada` to `bob`, posted `sent` seconds after the start of the session of `ada`.
 fn posted(meant_for: u64, sent: u64, letter: &Letter) -> Draft {
     let envelope = Envelope { sent: Nanos(sent * 1_000_000_000), ..envelope(meant_for) };
     letter_frame::written(&envelope, letter, &Key::of_letters("pair"))

@@ -1,4 +1,4 @@
-//! Reads the frames of a connection whose peer has proved its name, until the connection ends.
+//! Reads frames from a connection whose peer has proved its name, until the connection ends.
 
 use std::io::{ErrorKind, Read as _};
 use std::net::TcpStream;
@@ -11,16 +11,16 @@ use crate::link::letter_frame::{LONGEST_LETTER, is_letter};
 use crate::link::source::Source;
 use crate::link::state_frame::LONGEST;
 
-/// Maximum wait for bytes between two checks whether the run has ended.
+/// Maximum wait for bytes before the thread checks whether the run has ended.
 pub(super) const LOOK: Duration = Duration::from_millis(20);
-/// Time without a byte after which a connection is closed.
+/// Time without any byte after which a connection is closed.
 const SILENT: Duration = Duration::from_secs(2);
 
-/// The connection of a peer.
+/// A connection from a peer.
 pub(super) struct Connection {
     pub(super) stream: TcpStream,
     pub(super) source: Source,
-    /// `true` once the peer has made another connection.
+    /// `true` once the peer has opened another connection.
     pub(super) is_replaced: Arc<AtomicBool>,
     pub(super) endpoint: Arc<Endpoint>,
 }
@@ -34,11 +34,11 @@ impl Connection {
         }
     }
 
-    /// Takes frames until the connection ends.
+    /// Processes frames until the connection ends.
     ///
     /// # Errors
-    /// Fails with the end of a sentence if anything but states and letters of the peer arrives, or if nothing arrives
-    /// for a while.
+    /// Fails with the end of a sentence if anything other than states and letters of the peer arrives, or if nothing
+    /// arrives for a while.
     fn frames(&mut self) -> Result<(), String> {
         let set = self.stream.set_nonblocking(false).and_then(|()| self.stream.set_read_timeout(Some(LOOK)));
         set.map_err(|error| error.to_string())?;
@@ -79,7 +79,7 @@ impl Connection {
                 return Err(format!("it sends nothing for {} s", SILENT.as_secs()));
             }
             match self.stream.read(rest) {
-                // A peer that went away is not a fault of this robot's; its state grows old.
+                // A peer that closes its connection is not an error of this robot; the peer's state becomes stale.
                 Ok(0) => return Ok(false),
                 Ok(count) => (heard, filled) = (Instant::now(), filled + count),
                 Err(error)

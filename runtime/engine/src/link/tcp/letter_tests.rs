@@ -1,4 +1,4 @@
-//! Tests of letters over TCP on this machine: letters that arrive, and frames that are refused.
+//! Tests letters over TCP on this machine: valid letters arrive, and invalid frames are rejected.
 
 use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -32,18 +32,18 @@ pub(super) fn letters(link: &mut Tcp) -> Vec<Letter> {
     letters
 }
 
-/// Returns the link of `bob`, who takes plans of `ada`, and its address.
+/// Returns the link of `bob`, which accepts plans from `ada`, and its address.
 pub(super) fn bob() -> (Tcp, SocketAddr) {
     let (own, nobody) = (bound(), address(&bound()));
     let place = address(&own);
     (Tcp::on(own, &exchanging("bob", ("ada", nobody), "pair")).unwrap(), place)
 }
 
-/// Sends the state of `ada`, and then these bytes, which are written for the challenge.
+/// Sends the state of `ada`, followed by the bytes that `bytes` returns for the challenge.
 fn sends(place: SocketAddr, bytes: impl FnOnce(&Challenge) -> Vec<u8>) -> TcpStream {
     let (mut stream, challenge) = greeted(place);
     stream.write_all(&frame(&state("ada", 1), "key", &challenge)).unwrap();
-    // The connection may be refused meanwhile.
+    // The connection may have been refused in the meantime.
     let _ = stream.write_all(&bytes(&challenge));
     stream
 }
@@ -76,12 +76,12 @@ fn letters_go_both_ways_once_both_are_heard() {
     assert_eq!(wait(|| Some(letters(&mut ada)).filter(|letters| !letters.is_empty())), [answer]);
 }
 
-/// Returns the envelope of a letter of `ada` to a robot in this session.
+/// Returns the envelope of a letter from `ada` to a robot in this session.
 pub(super) fn envelope(meant_for: u64) -> Envelope {
     Envelope { from: "ada".to_owned(), to: "bob".to_owned(), sent_in: 5, meant_for, sent: Nanos::ZERO }
 }
 
-/// Bytes that a peer sends after a challenge, and the message about them.
+/// Bytes that a peer sends in response to a challenge, and the expected message about them.
 type Case<'c> = (&'c dyn Fn(&Challenge) -> Vec<u8>, &'c str);
 
 #[test]
@@ -118,7 +118,7 @@ fn what_is_no_letter_of_a_peer_is_refused() {
     let (mut messages, mut number) = (Vec::new(), 1);
     for (bytes, words) in cases {
         number += 1;
-        // The state after the letter shows that the letter has been read.
+        // When the state after the letter arrives, the letter has been read.
         let after = |challenge: &Challenge| frame(&state("ada", number), "key", challenge);
         let stream = sends(place, |challenge| [bytes(challenge), after(challenge)].concat());
         wait(|| received(&mut bob).into_iter().find(|state| state.number == number));
@@ -133,7 +133,7 @@ fn what_is_no_letter_of_a_peer_is_refused() {
     let mut first = greeted(place);
     first.0.write_all(&good(&first.1)).unwrap();
     message(&mut bob, "it sends a letter before its state");
-    // The good one is taken, and a copy of it is not.
+    // The valid letter is accepted, and its copy is ignored.
     let first = sends(place, &good);
     assert_eq!(wait(|| Some(letters(&mut bob)).filter(|letters| !letters.is_empty())), [plan("ada", 1)]);
     received(&mut bob);
@@ -187,7 +187,8 @@ pub(super) fn first_letter(listener: &TcpListener) -> Letter {
     }
 }
 
-/// Returns the link of `bob`, who has heard `ada`, the listener of `ada`, and her connection to `bob`.
+/// Returns the link of `bob` after a state of `ada` has arrived, the listener of `ada`, and the connection of `ada` to
+/// `bob`.
 pub(super) fn bob_with_listener() -> (Tcp, TcpListener, TcpStream) {
     let (listener, own) = (bound(), bound());
     let (at_ada, place) = (address(&listener), address(&own));

@@ -1,4 +1,4 @@
-//! The receiver: a thread that accepts connections, and a thread for each peer whose state has arrived.
+//! The receiver: one thread that accepts connections, and one thread for each peer whose state has arrived.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -13,13 +13,13 @@ use super::connection::{Connection, LOOK};
 use super::strangers::{Proved, Strangers};
 use crate::link::endpoint::Endpoint;
 
-/// Maximum number of connections that are accepted before the open ones are checked.
+/// Maximum number of connections accepted before the open connections are checked.
 const AT_ONCE: usize = 16;
 
-/// Starts the thread that accepts connections. Peers are expected to connect from these addresses.
+/// Starts the thread that accepts connections; `peers` are the addresses from which peers are expected to connect.
 ///
 /// # Errors
-/// Fails if the system cannot set up the listener or create the thread.
+/// Fails if the system cannot configure the listener or create the thread.
 pub(super) fn listen(listener: TcpListener, endpoint: &Arc<Endpoint>, peers: Vec<IpAddr>) -> io::Result<()> {
     listener.set_nonblocking(true)?;
     let endpoint = Arc::clone(endpoint);
@@ -29,13 +29,13 @@ pub(super) fn listen(listener: TcpListener, endpoint: &Arc<Endpoint>, peers: Vec
 
 fn accept(listener: &TcpListener, endpoint: &Arc<Endpoint>, peers: Vec<IpAddr>) {
     let mut strangers = Strangers::new(peers);
-    // For each peer, its connection: `true` once it has been replaced.
+    // Maps each peer to the flag of its connection: `true` once the connection has been replaced.
     let mut connections = BTreeMap::<String, Arc<AtomicBool>>::new();
     while !endpoint.is_over() {
         wait(listener, &strangers);
         for Proved { stream, source, robot } in strangers.look(endpoint) {
             let is_replaced = Arc::<AtomicBool>::default();
-            // An old connection may still be open when the peer connects again.
+            // The peer's old connection may still be open when it connects again.
             if let Some(old) = connections.insert(robot.clone(), Arc::clone(&is_replaced)) {
                 old.store(true, Ordering::Relaxed);
             }
@@ -50,7 +50,8 @@ fn accept(listener: &TcpListener, endpoint: &Arc<Endpoint>, peers: Vec<IpAddr>) 
                 Ok((stream, from)) => strangers.add(stream, from.ip(), endpoint),
                 Err(error) => {
                     endpoint.refuse("a connection", &format!("the system does not accept it: {error}"));
-                    // It waits for longer than this, and `poll` would return at once.
+                    // The connection remains in the queue, so `poll` would return at once: wait before the next
+                    // attempt.
                     thread::sleep(LOOK);
                     break;
                 }
@@ -66,7 +67,7 @@ fn accept_one(listener: &TcpListener) -> Option<io::Result<(TcpStream, SocketAdd
     (!connection.as_ref().is_err_and(is_none)).then_some(connection)
 }
 
-/// Waits a short time for a new connection, or for bytes on a connection that has not proved its name.
+/// Waits briefly for a new connection, or for bytes on a connection without a proved name.
 fn wait(listener: &TcpListener, strangers: &Strangers) {
     let mut files: Vec<_> = strangers.streams().map(|stream| PollFd::new(stream, PollFlags::IN)).collect();
     files.push(PollFd::new(listener, PollFlags::IN));

@@ -1,4 +1,4 @@
-//! Tests of what a link over TCP refuses: frames of others, recorded frames, floods, and too many connections.
+//! Tests that a TCP link rejects unauthenticated frames, replayed frames, floods, and too many connections.
 
 use std::collections::VecDeque;
 use std::io::{Read as _, Write as _};
@@ -16,7 +16,7 @@ use super::*;
 use crate::link::frame::{Challenge, GREETING_LENGTH};
 use crate::link::state_frame::LONGEST;
 
-/// Bytes that a peer sends after a challenge, and the message about them.
+/// Bytes that a peer sends in response to a challenge, and the expected message about them.
 type Case = (fn(&Challenge) -> Vec<u8>, &'static str);
 
 #[test]
@@ -50,7 +50,7 @@ fn what_is_no_state_of_a_peer_is_refused() {
     for (bytes, words) in cases {
         let (mut stranger, challenge) = greeted(place);
         stranger.write_all(&bytes(&challenge)).unwrap();
-        // The connection may be refused meanwhile.
+        // The connection may have been refused in the meantime.
         let _ = stranger.shutdown(std::net::Shutdown::Write);
         assert_eq!(stranger.read(&mut [0]).unwrap_or_default(), 0, "{words}: it is closed");
         read_messages(&mut bob, &mut messages);
@@ -67,7 +67,7 @@ fn recorded_states_are_worth_nothing_later() {
     let run = |session, number| State { session, ..state("ada", number) };
     let mut recorded = Vec::new();
     for session in [1, 2] {
-        // The second run begins once the first one is over.
+        // The second session is accepted only when the first one has ended.
         wait(|| {
             let (mut ada, challenge) = greeted(place);
             let frame = frame(&run(session, 5), "key", &challenge);

@@ -1,4 +1,4 @@
-//! The sender to one peer, which connects to the peer and writes only the newest state, but every letter.
+//! The sender to one peer: connects to the peer, and sends only the newest state, but every letter.
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
@@ -12,23 +12,23 @@ use crate::link::endpoint::Endpoint;
 use crate::link::frame::{Challenge, Draft, GREETING_LENGTH, Refused, VERSION};
 use crate::link::outbox::Outbox;
 
-/// Maximum time for an attempt to connect.
+/// Maximum duration of an attempt to connect.
 const CONNECTS: Duration = Duration::from_millis(500);
-/// Maximum time that a peer may take for its greeting.
+/// Maximum wait for a peer's greeting.
 const GREETS: Duration = Duration::from_secs(1);
-/// Time between two attempts to connect.
+/// Minimum time between two attempts to connect.
 const AGAIN: Duration = Duration::from_millis(200);
-/// Time after which the connection to a peer that acknowledges or reads nothing is closed and opened again. Otherwise
-/// the system would retransmit lost data at longer and longer intervals, even after the line has recovered.
+/// Time after which a connection is closed and opened again if the peer acknowledges or reads nothing. Without this
+/// limit, the system would retransmit lost data at longer and longer intervals, even after the line has recovered.
 pub(super) const WRITES: Duration = Duration::from_secs(2);
-/// Time after which a connection is considered to be stable.
+/// Time after which a connection is considered stable.
 const LASTS: Duration = Duration::from_secs(1);
-/// Minimum time between two states. Only the newest state matters, and a receiver accepts at most 2000 in a second.
+/// Minimum time between two states. Only the newest state matters, and a receiver accepts at most 2000 per second.
 const SPACING: Duration = Duration::from_millis(1);
-/// Size of the system's send buffer, in bytes. States in this buffer are not replaced by newer ones.
+/// Size of the system's send buffer, in bytes. A newer state does not replace states in this buffer.
 const BUFFER: usize = 16_384;
 
-/// Begins to send to the peer of this name.
+/// Starts to send to the peer `name`.
 ///
 /// # Errors
 /// Fails if the system cannot create the thread.
@@ -39,8 +39,8 @@ pub(super) fn begin(name: String, address: SocketAddr, endpoint: &Arc<Endpoint>)
     Ok(outbox)
 }
 
-/// Connects and sends until the run is over. A peer that cannot be reached is reported only once, until a connection to
-/// it has been stable.
+/// Connects and sends until the run has ended. Reports only once that a peer cannot be reached, until a connection to
+/// the peer has been stable.
 fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &Endpoint) {
     let mut sender = Sender { name, outbox, endpoint, last: None, is_known_as_down: false };
     while !endpoint.is_over() {
@@ -48,7 +48,7 @@ fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &End
         sender.drop_late_letters();
         sender.last = outbox.next().or(sender.last.take());
         if sender.last.is_none() {
-            // Before its first turn the robot has nothing to send, and a receiver waits for a state.
+            // Before its first turn, the robot has no state to send, and a receiver expects a state first.
             continue;
         }
         let failure = match connect(address) {
@@ -68,10 +68,10 @@ fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &End
     }
 }
 
-/// Connects to a peer, and reads its challenge.
+/// Connects to a peer, and receives the peer's challenge.
 ///
 /// # Errors
-/// Returns the end of a sentence if the peer cannot be reached, or has another version of the link.
+/// Returns the end of a sentence if the peer cannot be reached, or uses another version of the link.
 fn connect(address: SocketAddr) -> Result<(TcpStream, Challenge), String> {
     let mut greeting = [0; GREETING_LENGTH];
     let connected = (|| {
@@ -92,7 +92,7 @@ fn connect(address: SocketAddr) -> Result<(TcpStream, Challenge), String> {
     }
 }
 
-/// The sender to a peer.
+/// Sends states and letters to a peer.
 struct Sender<'l> {
     /// Name of the peer.
     name: &'l str,
@@ -106,11 +106,11 @@ struct Sender<'l> {
 }
 
 impl Sender<'_> {
-    /// Sends states and letters until an error occurs or the run is over; returns the error.
+    /// Sends states and letters until an error occurs or the run has ended; returns the error.
     fn send(&mut self, (mut stream, challenge): (TcpStream, Challenge)) -> io::Error {
         let begun = Instant::now();
         while !self.endpoint.is_over() {
-            // A frame that was written in part would shift all that follow: the connection is made anew.
+            // A partly written frame would make all later frames unreadable: a new connection is opened.
             if let Err(error) = self.last.iter().try_for_each(|state| stream.write_all(&state.frame(&challenge))) {
                 return error;
             }
@@ -121,7 +121,7 @@ impl Sender<'_> {
                 }
                 self.outbox.is_sent(letter.number);
             }
-            // A peer that has another key closes each connection at once.
+            // A peer with a different key closes each connection at once.
             if self.is_known_as_down && begun.elapsed() >= LASTS {
                 self.endpoint.say(format!("state link: connected to {} again", self.name));
                 self.is_known_as_down = false;

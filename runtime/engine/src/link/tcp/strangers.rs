@@ -1,5 +1,5 @@
-//! Connections whose peers have not proved their names, called strangers. Their number is limited, and a new connection
-//! replaces an old one, so that nobody can shut out peers by keeping connections open.
+//! Strangers: connections whose peers have not proved their names yet. Their number is limited, and a new connection
+//! replaces an old one, so an attacker cannot lock out peers with open connections.
 
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{IpAddr, TcpStream};
@@ -10,29 +10,29 @@ use crate::link::frame::Challenge;
 use crate::link::source::Source;
 use crate::link::state_frame::LONGEST;
 
-/// Maximum number of connections that have not proved a name.
+/// Maximum number of connections without a proved name.
 const PLACES: usize = 64;
-/// Time within which the first state has to arrive.
+/// Time within which the first state has to arrive on a connection.
 const PROVES: Duration = Duration::from_secs(1);
 
-/// The connections that have not proved a name, in the order in which they were made.
+/// Connections without a proved name, in the order in which they were opened.
 pub(super) struct Strangers {
-    /// Addresses of the peers.
+    /// Addresses of the robot's peers.
     peers: Vec<IpAddr>,
     strangers: Vec<Stranger>,
 }
 
-/// A connection that has not proved a name.
+/// A connection without a proved name.
 struct Stranger {
     stream: TcpStream,
     from: IpAddr,
     since: Instant,
     source: Source,
-    /// Bytes that have arrived: the length of a frame, and the frame.
+    /// Bytes that have arrived: the length of a frame, followed by the frame.
     bytes: Vec<u8>,
 }
 
-/// A connection whose first state has arrived.
+/// A connection on which the first state has arrived.
 pub(super) struct Proved {
     pub(super) stream: TcpStream,
     pub(super) source: Source,
@@ -40,18 +40,18 @@ pub(super) struct Proved {
     pub(super) robot: String,
 }
 
-/// State of a stranger.
+/// Progress of a stranger towards a proved name.
 enum Progress {
     Waits,
     /// The connection has ended.
     Gone,
     Proved,
-    /// End of a sentence with the reason.
+    /// The connection has to be closed; contains the reason as the end of a sentence.
     Refused(String),
 }
 
 impl Strangers {
-    /// Returns an empty list of strangers, for a robot whose peers have these addresses.
+    /// Returns an empty list of strangers for a robot with peers at these addresses.
     pub(super) fn new(peers: Vec<IpAddr>) -> Self {
         Self { peers: peers.iter().map(IpAddr::to_canonical).collect(), strangers: Vec::new() }
     }
@@ -61,9 +61,9 @@ impl Strangers {
         self.strangers.iter().map(|stranger| &stranger.stream)
     }
 
-    /// Greets a new connection.
+    /// Adds a new connection, and sends a greeting on it.
     pub(super) fn add(&mut self, stream: TcpStream, from: IpAddr, endpoint: &Endpoint) {
-        // A listener for both versions of IP has IPv4 addresses as ones of IPv6.
+        // A listener for both versions of IP reports IPv4 addresses as IPv6 addresses.
         let from = from.to_canonical();
         let Ok(stranger) = Stranger::greeted(stream, from) else {
             return endpoint.refuse(&from.to_string(), "it could not be greeted");
@@ -79,7 +79,7 @@ impl Strangers {
         self.strangers.push(stranger);
     }
 
-    /// Reads the bytes that strangers have sent; returns the connections that have proved a name.
+    /// Reads the bytes that strangers have sent; returns the connections whose names are now proved.
     pub(super) fn look(&mut self, endpoint: &Endpoint) -> Vec<Proved> {
         let mut proved = Vec::new();
         for mut stranger in std::mem::take(&mut self.strangers) {
@@ -98,8 +98,9 @@ impl Strangers {
     }
 }
 
-/// Returns the index of the stranger that a new connection from the address `new` replaces: the oldest that is not at
-/// the address of a peer. If all are, it is the oldest of all if `new` is the address of a peer, and `None` otherwise.
+/// Returns the index of the stranger that a new connection from the address `new` replaces: the oldest one that is not
+/// from a peer's address. If all are from peers' addresses, it is the oldest one if `new` is also a peer's address, and
+/// `None` otherwise.
 fn place_for(new: IpAddr, strangers: &[IpAddr], peers: &[IpAddr]) -> Option<usize> {
     let is_elsewhere = |from: &IpAddr| !peers.contains(from);
     strangers.iter().position(is_elsewhere).or_else(|| peers.contains(&new).then_some(0))
@@ -113,7 +114,7 @@ impl Stranger {
     fn greeted(mut stream: TcpStream, from: IpAddr) -> std::io::Result<Self> {
         stream.set_nonblocking(true)?;
         let challenge = Challenge::random()?;
-        // The buffer of a new connection is empty.
+        // The send buffer of a new connection is empty, so this does not block.
         stream.write_all(&challenge.greeting())?;
         let source = Source::of_connection(challenge);
         Ok(Self { stream, from, since: Instant::now(), source, bytes: Vec::new() })

@@ -1,4 +1,4 @@
-//! Tests of links over TCP on this machine: states that arrive, and peers that come and go.
+//! Tests TCP links on this machine: states arrive, and peers come and go.
 
 use std::collections::VecDeque;
 use std::io::{Read as _, Write as _};
@@ -15,7 +15,7 @@ use crate::link::frame::{Challenge, GREETING_LENGTH, Key, Times};
 use crate::link::state_frame::written;
 use crate::link::{SharedValue, clock};
 
-/// Maximum time for which a test waits.
+/// Maximum wait in a test.
 pub(super) const SOON: Duration = Duration::from_secs(20);
 
 pub(super) fn bound() -> TcpListener {
@@ -56,13 +56,13 @@ pub(super) fn greeted(place: SocketAddr) -> (TcpStream, Challenge) {
     (stream, Challenge::of_greeting(&greeting).unwrap())
 }
 
-/// Returns the frame of a state for this challenge, at the beginning of the session.
+/// Returns the frame of a state for this challenge, written at the start of the session.
 pub(super) fn frame(state: &State, key: &str, challenge: &Challenge) -> Vec<u8> {
     let now = clock::now();
     written(state, Times { begun: now, measured: now }, &Key::of(key)).frame_at(challenge, now)
 }
 
-/// Returns the link of `bob`, whose peer is `ada`, and its address; no robot listens at the address of `ada`.
+/// Returns the link of `bob`, whose only peer is `ada`, and its address. No robot listens at the address of `ada`.
 pub(super) fn bob() -> (Tcp, SocketAddr) {
     let (own, nobody) = (bound(), address(&bound()));
     let place = address(&own);
@@ -83,12 +83,12 @@ pub(super) fn wait<T>(mut happens: impl FnMut() -> Option<T>) -> T {
 
 pub(super) fn received(link: &mut Tcp) -> Vec<State> {
     let mut states = Vec::new();
-    // The age is by the clock.
+    // The age depends on the clock, so it is ignored.
     link.receive(Nanos::ZERO, &mut |state| states.push(State { age: Nanos::ZERO, ..state }));
     states
 }
 
-/// Waits for a message with these words.
+/// Waits for a message that contains these words.
 pub(super) fn message(link: &mut Tcp, words: &str) -> String {
     wait(|| {
         let mut found = None;
@@ -101,12 +101,12 @@ pub(super) fn message(link: &mut Tcp, words: &str) -> String {
     })
 }
 
-/// Appends the messages that wait.
+/// Appends all waiting messages.
 pub(super) fn read_messages(link: &mut Tcp, messages: &mut Vec<String>) {
     link.messages(&mut |message| messages.push(message.to_owned()));
 }
 
-/// Asserts that states of a good peer still arrive.
+/// Asserts that states of a valid peer still arrive.
 pub(super) fn assert_goes_on(link: &mut Tcp, place: SocketAddr) {
     let (mut peer, challenge) = greeted(place);
     peer.write_all(&frame(&state("ada", 77), "key", &challenge)).unwrap();
@@ -211,7 +211,7 @@ fn few_states_wait_for_a_peer_that_reads_slowly() {
         bob.send(&state("bob", number), Nanos::ZERO);
         std::thread::yield_now();
     }
-    // What waits on the way arrives before the newest state.
+    // Data that are already in the buffers arrive before the newest state.
     slow.set_read_timeout(Some(Duration::from_millis(200))).unwrap();
     let mut bytes = 0;
     let mut buffer = [0; 65_536];
@@ -230,9 +230,9 @@ fn a_peer_that_never_reads_delays_no_turn() {
     let (mut deaf, _) = listener.accept().unwrap();
     deaf.write_all(&Challenge::NONE.greeting()).unwrap();
     let (begun, mut number, mut turns) = (Instant::now(), 1, VecDeque::new());
-    // As fast as it goes: the buffers of the system are full soon. The sender has then waited for half a second
-    // before it gives the peer up. A turn that waited with it would be the only one in that time; a busy machine may
-    // make it so once.
+    // Send as fast as possible, so the system's buffers are soon full; the sender then waits for [`WRITES`] before it
+    // gives up the peer. A turn that waited as well would be the only one in that time. A busy machine may cause this
+    // once.
     loop {
         assert!(begun.elapsed() < SOON, "turns wait for the peer");
         number += 1;
