@@ -1,17 +1,17 @@
-//! The recorder of paths: the path that a robot drives under some laws becomes a path that the plan replays.
+//! The path recorder: records a path that the robot drives, for the plan to replay later.
 
 use mdle_runtime::StoredPath;
 
-/// Records the path driven under some laws, and replaces a path of the robot by it.
+/// Records the path driven under certain laws, and replaces a path of the robot with it.
 pub trait Recorder<Y>: Send {
-    /// Writes the recorded path into the output of a turn.
+    /// Writes the recorded path to the output of a turn.
     fn complete(&self, y: &mut Y);
 
-    /// Returns the path that was recorded since the last call in place of an earlier path of its name; `None` if no
-    /// path was.
+    /// Returns the newly recorded path if it has replaced a path with the same name since the last call; `None`
+    /// otherwise.
     fn take_replaced(&mut self) -> Option<StoredPath>;
 
-    /// Takes a turn with output `y`. `law` is the text of the law that runs after the turn, `None` if no law does;
+    /// Processes a turn with output `y`. `law` is the text of the law that runs after the turn, `None` if no law runs;
     /// `has_changed` is `true` if the plan made transitions. Returns a message for the operator if there is one.
     fn turn(&mut self, y: &Y, law: Option<&str>, has_changed: bool) -> Option<String>;
 }

@@ -1,5 +1,5 @@
-//! Runs that are repeated from their record. A [`History`] collects the data that an engine needs for this in
-//! addition to the robot's outputs; an engine then repeats these changes without modules, threads or people.
+//! Replays recorded runs. A [`History`] collects the data that an engine needs for a replay in addition to the robot's
+//! outputs; an engine then repeats these changes without modules, threads or users.
 
 mod history;
 mod repeats;

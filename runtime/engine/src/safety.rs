@@ -1,8 +1,8 @@
-//! The safety rules of a run, which apply to every input before the robot gets it, whatever the plan
+//! The safety rules of a run, which apply to every input before it is sent to the robot, whatever the plan is
 //! (docs/src/safety.md).
 //!
-//! [`read()`] reads the rules of a file, [`Conditions`] compiles the conditions of its guards for a robot, and
-//! an [`Envelope`] of both decides which input is sent to the robot.
+//! [`read()`] reads the rules in a file, [`Conditions`] compiles the conditions of the guards for a robot, and an
+//! [`Envelope`] uses both to decide which input is sent to the robot.
 
 mod conditions;
 mod envelope;

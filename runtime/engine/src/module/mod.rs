@@ -1,5 +1,5 @@
-//! Modules: code that makes its turn in every turn of the engine, and code that runs in the background (paper,
-//! sections III-B to III-E).
+//! Modules: code that makes a turn in every turn of the engine, or runs in the background (paper, sections III-B to
+//! III-E).
 
 mod background;
 mod candidate;
@@ -16,22 +16,22 @@ use mdle_runtime::Nanos;
 
 use crate::attribute::{Attribute, In, Out, Reading};
 
-/// A registered module of an engine whose robot has the output `Y`. A function that declares the module's
-/// attributes creates the module; unloading drops it.
+/// A registered module of an engine whose robot has the output `Y`. The function that creates the module declares its
+/// attributes; unloading drops the module.
 ///
 /// A module may be called on any thread, but only by one thread at a time.
 pub trait Module<Y>: Send {
-    /// Makes a turn: reads the robot's output of this turn, and the values that modules had published by the
-    /// end of the last turn.
+    /// Makes a turn: reads the robot's output of this turn, and the values that modules had published by the end of the
+    /// previous turn.
     ///
     /// # Errors
-    /// Returns the reason why the module cannot continue, for the operator. The module makes no further turn.
+    /// Returns the reason why the module cannot continue, for the operator. The module then makes no further turn.
     fn turn(&mut self, turn: &mut Turn<'_, Y>) -> Result<(), Fault>;
 
-    /// Called before the first turn, and before the first turn after [`Module::stop`].
+    /// Called before the module's first turn, and before the first turn after [`Module::stop`].
     fn start(&mut self) {}
 
-    /// Called after the module's last turn before it is stopped, because a person has stopped it or nothing reads it at
+    /// Called after the module's last turn when it is stopped, because a user has stopped it or nothing reads it at
     /// present.
     fn stop(&mut self) {}
 }
@@ -59,7 +59,7 @@ pub struct Fault(pub String);
 pub struct Turn<'t, Y> {
     /// Number of the turn, from 0.
     pub number: u64,
-    /// Time of the turn on the engine's clock, on which the first turn is at zero.
+    /// Time of the turn on the engine's clock; zero in the first turn.
     pub now: Nanos,
     /// The robot's output of this turn.
     pub y: &'t Y,
@@ -67,22 +67,22 @@ pub struct Turn<'t, Y> {
 }
 
 impl<Y> Turn<'_, Y> {
-    /// Returns the value of an attribute as of the last break, or the value of a setting; `None` while no
-    /// module has published the attribute, and once its module is unloaded.
+    /// Returns the value of an attribute as of the last turn break, or the value of a setting. Returns `None` before a
+    /// module has published the attribute, and after its module was unloaded.
     #[must_use]
     pub fn get<T: Attribute>(&self, attribute: In<T>) -> Option<T> {
         self.ports.get(attribute)
     }
 
-    /// Returns the value that [`Turn::get`] returns, with the time at which it was published; a setting has the time at
-    /// which it was changed.
+    /// Returns the value that [`Turn::get`] returns, with the time at which it was published; for a setting, with the
+    /// time at which it was changed.
     #[must_use]
     pub fn reading<T>(&self, attribute: In<T>) -> Option<&Reading> {
         self.ports.reading(attribute)
     }
 
-    /// Publishes a value at the break that ends this turn. Of several values in one turn, only the last is
-    /// published; a value that contains NaN is not published.
+    /// Publishes a value at the turn break that ends this turn. If a turn publishes several values, only the last one
+    /// counts; a value that contains NaN is not published.
     pub fn publish<T: Attribute>(&mut self, attribute: Out<T>, value: T) {
         self.ports.publish(attribute, value);
     }

@@ -1,4 +1,4 @@
-//! Changes of plans between turns, in the form in which a record stores them.
+//! Collects changes of plans between turns in the form in which a record stores them.
 
 use std::collections::BTreeMap;
 
@@ -9,15 +9,15 @@ use super::event::When;
 /// The changes of plans since the last turn.
 #[derive(Debug, Default)]
 pub(crate) struct PlanChanges {
-    /// Number of each set of files of a plan that the record contains, by the hash of the files. Only hashes are kept,
-    /// because a run may have any number of plans.
+    /// Maps the hash of a plan's files to their number in the record. Only hashes are kept, because a run may have any
+    /// number of plans.
     files: BTreeMap<[u8; 32], u32>,
     changes: Vec<Change>,
 }
 
 impl PlanChanges {
-    /// Records that the plan `plan` of these files is to take over. Files that the record contains already are not
-    /// recorded again.
+    /// Records that the plan `plan` in these files is armed to take over at `when`. Files that the record already
+    /// contains are not recorded again.
     pub(crate) fn armed(&mut self, files: &[(String, String)], plan: &str, when: When) {
         let next = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
         let number = *self.files.entry(hash(files)).or_insert_with(|| {
@@ -27,7 +27,7 @@ impl PlanChanges {
         self.changes.push(Change::Armed { files: number, plan: plan.to_owned(), when: when.number() });
     }
 
-    /// Records another change.
+    /// Records any other change.
     pub(crate) fn note(&mut self, change: Change) {
         self.changes.push(change);
     }
@@ -42,7 +42,7 @@ impl PlanChanges {
 fn hash(files: &[(String, String)]) -> [u8; 32] {
     let mut hasher = blake3::Hasher::new();
     for text in files.iter().flat_map(|(name, text)| [name, text]) {
-        // The length separates a text from the next one.
+        // The length separates the text from the next text.
         hasher.update(&u64::try_from(text.len()).unwrap_or(u64::MAX).to_le_bytes());
         hasher.update(text.as_bytes());
     }

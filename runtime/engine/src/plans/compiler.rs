@@ -1,5 +1,5 @@
-//! Compiles plans on a separate thread while turns are made. Orders are carried out one after the other, those of the
-//! operator first.
+//! Compiles plans on a separate thread while turns are made. Carries out one order at a time, orders of the operator
+//! first.
 
 use std::collections::VecDeque;
 use std::io;
@@ -14,14 +14,14 @@ const WAITING: usize = 16;
 
 /// The compiler of an engine.
 pub(crate) enum Compiler<A: EngineAlphabet> {
-    /// A thread, which ends when this value is dropped.
+    /// A separate thread, which ends when this value is dropped.
     Thread(CompilerThread<A>),
-    /// A function that carries out each order at once, so that every run with the same inputs is the same, and the
-    /// outcomes.
+    /// A function that carries out each order at once, so that runs with the same inputs are equal; and the outcomes of
+    /// the orders.
     AtOnce(Box<Compile<A>>, VecDeque<Outcome<A>>),
 }
 
-/// Orders for plans to take over that have waited for the compiler: one of the operator, and one of another robot.
+/// Orders for plans to take over that were waiting: one of the operator, and one of another robot.
 type Waiting<A> = [Option<Order<A>>; 2];
 
 /// The compiler's thread, which ends when this value is dropped.
@@ -36,15 +36,15 @@ struct Counter<A: EngineAlphabet> {
 struct State<A: EngineAlphabet> {
     /// Orders of the operator.
     waiting: VecDeque<Order<A>>,
-    /// The newest order of another robot, which is carried out after all orders of the operator.
+    /// Newest order of another robot. It is carried out after all orders of the operator.
     sent: Option<Order<A>>,
     done: VecDeque<Outcome<A>>,
     quits: bool,
 }
 
 impl<A: EngineAlphabet> Compiler<A> {
-    /// Gives an order to the compiler. An order for a plan to take over cancels earlier ones that still wait, and
-    /// returns them; an order of another robot cancels no order of the operator.
+    /// Passes an order to the compiler. An order for a plan to take over cancels and returns earlier orders of this
+    /// type that still wait; an order of another robot does not cancel an order of the operator.
     ///
     /// # Errors
     /// Fails with a sentence if too many orders wait.
@@ -58,7 +58,7 @@ impl<A: EngineAlphabet> Compiler<A> {
         }
     }
 
-    /// Removes and returns the waiting orders for plans to take over.
+    /// Removes and returns the orders for plans to take over that still wait.
     pub(crate) fn take_back(&self) -> Waiting<A> {
         match self {
             Self::Thread(thread) => thread.0.lock().take_back(),
@@ -66,7 +66,7 @@ impl<A: EngineAlphabet> Compiler<A> {
         }
     }
 
-    /// Removes and returns the waiting order of another robot; `None` if there is none.
+    /// Removes and returns the order of another robot that still waits; `None` if there is none.
     pub(crate) fn take_back_sent(&self) -> Option<Order<A>> {
         match self {
             Self::Thread(thread) => thread.0.lock().sent.take(),
@@ -74,7 +74,7 @@ impl<A: EngineAlphabet> Compiler<A> {
         }
     }
 
-    /// Returns the outcome of the next order that was carried out; `None` if there is none. Never waits.
+    /// Returns the outcome of the next finished order; `None` if there is none. Never waits.
     pub(crate) fn done(&mut self) -> Option<Outcome<A>> {
         match self {
             Self::Thread(thread) => thread.done(),
@@ -130,7 +130,7 @@ impl<A: EngineAlphabet> State<A> {
         [self.take_back_own(), self.sent.take()]
     }
 
-    /// Removes and returns the waiting order of the operator for a plan to take over; `None` if there is none.
+    /// Removes and returns the operator's order for a plan to take over that still waits; `None` if there is none.
     fn take_back_own(&mut self) -> Option<Order<A>> {
         let place = self.waiting.iter().position(|order| order.task.takes_over())?;
         self.waiting.remove(place)

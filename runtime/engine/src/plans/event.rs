@@ -3,20 +3,20 @@
 use std::fmt;
 use std::sync::Arc;
 
-/// Moment at which a new plan takes over. In every case, the robot gets exactly one input in that turn: the
-/// input of the new plan's first turn.
+/// Moment at which a new plan takes over. For any moment, the robot gets exactly one input in that turn: the input of
+/// the new plan's first turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum When {
     /// The next turn.
     Now,
     /// The turn in which the current atom ends.
     AtomEnds,
-    /// The turn in which the current plan is over.
+    /// The turn in which the current plan ends.
     PlanEnds,
 }
 
 impl When {
-    /// Every moment, with its name in commands.
+    /// All moments, each with its name in commands.
     pub const ALL: [(&'static str, Self); 3] = [("now", Self::Now), ("atom", Self::AtomEnds), ("plan", Self::PlanEnds)];
 
     /// Returns the number of the moment in records: its index in [`When::ALL`].
@@ -42,18 +42,18 @@ impl fmt::Display for When {
     }
 }
 
-/// An event about a request, with the number that the request returned; the first plan has number 1.
+/// An event about a request, with the number of the request; the first plan has number 1.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PlanEvent {
-    /// The request was refused, and nothing has changed: the diagnostics of a text, or a sentence.
+    /// The request was refused, and nothing has changed; contains the diagnostics of the text, or a sentence.
     Refused(u32, String),
-    /// The text has warnings, given as diagnostics. Another event follows.
+    /// The text has warnings, given as diagnostics. Another event for the request follows.
     Warned(u32, String),
-    /// The plans of the request are stored: their names.
+    /// The plans of the request are stored; contains their names.
     Stored(u32, Vec<Arc<str>>),
-    /// Another request came before this one was compiled, and replaces it.
+    /// A later request replaces this one, which was not compiled yet.
     Superseded(u32),
-    /// The plan of this name was armed, and does not take over: the plan that is armed next replaces it.
+    /// The plan with this name was armed, but another plan was armed before it could take over.
     Replaced(u32, Arc<str>),
     /// The plan is compiled, and takes over when its moment comes.
     Armed(u32),
@@ -75,7 +75,7 @@ pub enum PlanEvent {
 }
 
 impl PlanEvent {
-    /// Returns the number of the request; for a rollback, that of the plan that was ended.
+    /// Returns the number of the request; for a rollback, the number of the request for the plan that was ended.
     pub(crate) fn request(&self) -> u32 {
         match self {
             Self::Refused(ticket, _)
@@ -91,14 +91,14 @@ impl PlanEvent {
         }
     }
 
-    /// Returns `true` if this event decides the request: its plan has begun or will never begin, or its plans are
+    /// Returns `true` if this event decides the request: the plan has begun or will never begin, or the plans are
     /// stored.
     pub(crate) fn is_decision(&self) -> bool {
         !matches!(self, Self::Warned(..) | Self::Armed(_))
     }
 }
 
-/// Error of a rollback when no plan is on trial.
+/// Error of a rollback: no plan is on trial.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NoTrial;
 

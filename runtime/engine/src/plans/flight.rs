@@ -1,4 +1,4 @@
-//! The turn of a plan, with all data that it needs, as it is passed to another thread and back.
+//! A plan's turn, with all data that it needs, in the form in which threads exchange it.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -10,30 +10,30 @@ use super::running::Running;
 use super::{EngineAlphabet, When};
 use crate::module::{self, Fault, Module, panicked};
 
-/// The turn of a plan, together with the plan that may take over in the same turn.
+/// A plan's turn, with the plan that may take over in this turn.
 pub(crate) struct Flight<A: Alphabet> {
     pub(crate) current: Running<A>,
-    /// The plan that takes over in this turn, if its moment comes.
+    /// Plan that takes over in this turn if its moment comes, with this moment.
     pub(crate) next: Option<(Running<A>, When)>,
     /// Values that the next plan reads from modules.
     pub(crate) published: Published,
     /// Transitions of the current plan.
     pub(crate) transitions: Transitions,
-    /// Result of the turn; `None` before the turn is made.
+    /// Result of the turn; `None` before the turn was made.
     pub(crate) turn: Option<Turn<A::Input>>,
     /// Time of the turn.
     pub(crate) at: Nanos,
 }
 
-/// Place where the control thread and the plan's thread exchange a turn. It is never locked while code of a
-/// plan runs, so that a plan that hangs keeps only its own turn.
+/// Place where the control thread and the plan's thread exchange a turn. It is never locked while the code of a plan
+/// runs, so a plan that hangs blocks only its own turn.
 pub(crate) struct Desk<A: Alphabet>(Mutex<OnDesk<A>>);
 
 struct OnDesk<A: Alphabet> {
     flight: Option<Box<Flight<A>>>,
-    /// The plan that was replaced in this turn; `None` if none was.
+    /// Plan that was replaced in this turn; `None` if no plan was replaced.
     replaced: Option<Running<A>>,
-    /// Message of a panic in this turn; `None` if there was no panic.
+    /// Panic message of this turn; `None` if the turn did not panic.
     panic: Option<String>,
 }
 
@@ -60,7 +60,7 @@ impl<A: Alphabet> Desk<A> {
         self.lock().flight = Some(flight);
     }
 
-    /// Takes the turn and the other results from the desk.
+    /// Takes the turn and its other results from the desk.
     pub(crate) fn take(&self) -> Landed<A> {
         let mut desk = self.lock();
         Landed { flight: desk.flight.take(), replaced: desk.replaced.take(), panic: desk.panic.take() }
@@ -68,14 +68,14 @@ impl<A: Alphabet> Desk<A> {
 }
 
 impl<A: EngineAlphabet> Flight<A> {
-    /// Returns the data of a plan's turns, before the first turn.
+    /// Returns the data for the turns of a plan that has not begun.
     pub(crate) fn new(current: Running<A>) -> Box<Self> {
         let transitions = Transitions::default();
         Box::new(Self { current, next: None, published: Published::NONE, transitions, turn: None, at: Nanos::ZERO })
     }
 
-    /// Makes the turn. A plan that is replaced is put on the desk before its successor, which may hang, makes
-    /// its turn.
+    /// Makes the turn. A replaced plan is put on the desk before its successor makes a turn, because the successor may
+    /// hang.
     fn fly(&mut self, y: &A::Output, now: Nanos, desk: &Desk<A>) {
         let turn = self.current.turn(y, now, &mut self.transitions);
         let takes_over = match &self.next {
@@ -86,7 +86,7 @@ impl<A: EngineAlphabet> Flight<A> {
         };
         self.turn = match self.next.take_if(|_| takes_over) {
             Some((next, _)) => {
-                // The input of the turn is dropped, and the law that computed it has had no effect.
+                // The input of the replaced plan is discarded: the law that computed it has had no effect.
                 desk.lock().replaced = Some(std::mem::replace(&mut self.current, next));
                 self.transitions.clear();
                 let mut y = y.clone();
@@ -98,7 +98,7 @@ impl<A: EngineAlphabet> Flight<A> {
     }
 }
 
-/// The module of the plans, which makes the turn on the desk.
+/// Module that makes the turns of plans: the turn that is on the desk.
 pub(crate) struct PlanModule<A: Alphabet>(pub(crate) Arc<Desk<A>>);
 
 impl<A: EngineAlphabet> Module<A::Output> for PlanModule<A> {

@@ -1,7 +1,7 @@
-//! Plans at run time: the active plan, the plan that is to take over, the suspended plan to which the engine
-//! can roll back, and the stored plans (paper, sections III-D and III-H).
+//! Plans at run time: the active plan, the armed plan, which is about to take over, the suspended plan, to which the
+//! engine can roll back, and the stored plans (paper, sections III-D and III-H).
 //!
-//! A front end makes requests at a turn break, such as [`Plans::swap`], and reads the answers from
+//! A front end makes requests at a turn break, such as [`Plans::swap`], and reads the answers with
 //! [`Plans::take_events`] after each turn.
 
 mod changes;
@@ -35,51 +35,51 @@ use stored::Store;
 pub use stored::{MOST_STORED, StoredPlan};
 pub(crate) use turns::PlanTurn;
 
-/// Time for which a new plan is on trial, unless [`Plans::set_trial`] sets another.
+/// Default duration of a new plan's trial; [`Plans::set_trial`] sets another.
 pub const TRIAL: Nanos = Nanos(3_000_000_000);
 
-/// Reason to refuse the plan of another robot while a plan of the operator waits to take over.
+/// Reason to refuse a plan of another robot: a plan of the operator waits to take over.
 const OPERATOR_FIRST: &str = "a plan of the operator waits to take over: send the plan again later";
 
 /// The plans of one robot.
 pub struct Plans<A: EngineAlphabet> {
-    /// The active plan; `None` while its turn is being made or is late, and after it has panicked.
+    /// The active plan; `None` while its turn is running or late, and after it has panicked.
     current: Option<Box<Flight<A>>>,
-    /// The armed plan, and the moment at which it is to take over; `None` if no plan is armed.
+    /// The armed plan, and the moment at which it takes over; `None` if no plan is armed.
     armed: Option<(Running<A>, When)>,
-    /// The plan that the plan on trial has replaced, with the time of the turn in which it was suspended; `None` if no
-    /// plan is on trial.
+    /// The plan that was replaced by the plan on trial, with the time of the turn in which it was suspended; `None` if
+    /// no plan is on trial.
     suspended: Option<(Running<A>, Nanos)>,
-    /// Time at which the plan that continues in the next turn was suspended; `None` if the next turn continues no
-    /// suspended plan.
+    /// Time at which the plan that continues in the next turn was suspended; `None` if no suspended plan continues in
+    /// the next turn.
     resumes: Option<Nanos>,
     trial: Nanos,
     trial_ends: Nanos,
     compiler: Option<Compiler<A>>,
     desk: Arc<Desk<A>>,
     stored: Store<A>,
-    /// Names of the paths that the robot can replay: those of the first plan.
+    /// Names of the paths that the robot can replay: the paths of the first plan.
     paths: Vec<&'static str>,
     /// Number of the last request.
     last: u32,
-    /// Number of the last plan that has begun.
+    /// Number of the last plan that began.
     begun: u32,
     /// Number of the last request before a safety rule replaced the plan; 0 if no rule has replaced it.
     overruled: u32,
-    /// Number of the request for the plan that may take over in the turn that is being made; `None` if no plan may.
+    /// Number of the request for the plan that may take over in the running turn; `None` if no plan may take over.
     aloft: Option<u32>,
     peers: PeerRequests,
     driving: Driving,
-    /// Reason why the active plan has replaced another plan.
+    /// Reason why the active plan replaced the previous plan.
     reason: String,
     events: Vec<PlanEvent>,
-    /// Plans to drop on another thread, since dropping a large plan takes longer than a turn allows.
+    /// Values to drop on another thread, because dropping a large plan takes longer than a turn allows.
     spent: Vec<Spent>,
-    /// Changes of the plans, for a record; `None` if the run is not recorded.
+    /// Changes of plans for the record; `None` if the run is not recorded.
     changes: Option<PlanChanges>,
 }
 
-/// Names and numbers of the active plan.
+/// Name and numbers of the active plan.
 #[derive(Debug, Clone)]
 struct Driving {
     number: u32,
@@ -121,7 +121,7 @@ impl<A: EngineAlphabet> Plans<A> {
         }
     }
 
-    /// Begins to collect the changes that a record needs.
+    /// Starts to collect changes of plans for a record.
     pub(crate) fn record(&mut self) {
         self.changes = Some(PlanChanges::default());
     }
@@ -131,20 +131,20 @@ impl<A: EngineAlphabet> Plans<A> {
         self.changes.as_mut().map(PlanChanges::take).unwrap_or_default()
     }
 
-    /// Collects a change if the run is recorded.
+    /// Collects a change for the record if the run is recorded.
     pub(crate) fn note(&mut self, change: Change) {
         if let Some(changes) = &mut self.changes {
             changes.note(change);
         }
     }
 
-    /// Sets the duration of the trial of plans that take over from now on.
+    /// Sets the trial duration of plans that take over from now on.
     pub fn set_trial(&mut self, trial: Nanos) {
         self.trial = trial;
         self.note(Change::Trial(trial));
     }
 
-    /// Returns the duration of the trial of a plan that takes over.
+    /// Returns the trial duration of plans that take over.
     #[must_use]
     pub fn trial(&self) -> Nanos {
         self.trial
@@ -155,8 +155,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.events.drain(..)
     }
 
-    /// Returns the number of the active plan: the first plan has number 1, and each plan that begins has the
-    /// next number.
+    /// Returns the number of the active plan: the first plan has number 1, and each new plan has the next number.
     #[must_use]
     pub fn number(&self) -> u32 {
         self.driving.number
@@ -174,7 +173,7 @@ impl<A: EngineAlphabet> Plans<A> {
         &self.paths
     }
 
-    /// Returns the name of the plan of this request; `None` if the plan is neither active nor armed.
+    /// Returns the name of the plan for this request; `None` if the plan is neither active nor armed.
     pub(crate) fn name_of(&self, ticket: u32) -> Option<&str> {
         let armed = self.armed.iter().map(|(plan, _)| (plan.ticket, &*plan.name));
         let plans = armed.chain([(self.driving.ticket, &*self.driving.name)]);
@@ -187,8 +186,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.armed.as_ref().map(|(plan, when)| (&*plan.name, *when))
     }
 
-    /// Returns the reason why the plan of this request must not take over at present; `None` if it may. Only plans of
-    /// other robots are refused.
+    /// Returns the reason why the plan for this request must not take over now; `None` if it may. Only plans of other
+    /// robots are refused.
     fn refuses(&self, ticket: u32) -> Option<&'static str> {
         let mut waiting = self.armed.iter().map(|(plan, _)| plan.ticket).chain(self.aloft);
         let waits = |waiting: u32| !self.peers.has(waiting);
@@ -202,31 +201,30 @@ impl<A: EngineAlphabet> Plans<A> {
         self.suspended.as_ref().map(|_| self.trial_ends)
     }
 
-    /// Returns the reason why the active plan has replaced another plan; empty for the first plan, and for a plan of a
-    /// safety rule.
+    /// Returns the reason why the active plan replaced the previous plan; empty for the first plan, and for a plan that
+    /// a safety rule started.
     pub(crate) fn reason(&self) -> &str {
         &self.reason
     }
 
-    /// Returns the machine of the active plan, once the plan has begun.
+    /// Returns the state machine of the active plan; `None` before the plan has begun.
     #[must_use]
     pub fn machine(&self) -> Option<&Machine<LoadedPlan<A>>> {
         self.current.as_ref().and_then(|flight| flight.current.machine.as_ref())
     }
 
-    /// Returns the time, on the engine's clock, at which the active plan began, plus the time for which it was
-    /// suspended.
+    /// Returns the start time of the active plan on the engine's clock. Time for which the plan was suspended is added.
     #[must_use]
     pub fn zero(&self) -> Nanos {
         self.current.as_ref().map_or(Nanos::ZERO, |flight| flight.current.zero)
     }
 
-    /// Takes the values that are no longer needed.
+    /// Takes the values that have to be dropped on another thread.
     pub(crate) fn take_spent(&mut self) -> impl Iterator<Item = Spent> {
         self.spent.drain(..)
     }
 
-    /// Returns the attributes of modules that the active plan reads, once it has begun.
+    /// Returns the module attributes that the active plan reads; no attributes before the plan has begun.
     pub(crate) fn driving_reads(&self) -> &'static [ModuleRead] {
         let driving = self.current.as_ref().filter(|flight| flight.current.machine.is_some());
         driving.map_or(&[], |flight| flight.current.reads)

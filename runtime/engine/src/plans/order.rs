@@ -1,4 +1,4 @@
-//! Orders to the compiler: the texts and plans that they are about, and their outcomes.
+//! Orders to the compiler, with their sources and their outcomes.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -9,14 +9,14 @@ use mdle_compiler::load::LoadedPlan;
 use super::{EngineAlphabet, StoredPlan, When};
 use crate::module::panicked;
 
-/// Source of a text that contains plans.
+/// Source of the text of plans.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PlanSource {
-    /// A file, by its path.
+    /// A file, given by its path.
     File(PathBuf),
-    /// A typed text.
+    /// Text that a user has typed.
     Text(String),
-    /// A text that another robot has sent.
+    /// Text that another robot has sent.
     Peer {
         /// Name of the robot.
         robot: String,
@@ -25,18 +25,18 @@ pub enum PlanSource {
     },
 }
 
-/// The result of compiling a text: its plans and warnings.
+/// Result of compiling a text: plans and warnings.
 pub struct CompiledPlans<A: EngineAlphabet> {
     /// The plans that no other plan of the text uses.
     pub plans: Vec<StoredPlan<A>>,
-    /// Warnings as text for people; empty if there are none.
+    /// Warnings in readable form; empty if there are no warnings.
     pub warnings: String,
 }
 
-/// Compiles and loads the plans of a text.
+/// A function that compiles and loads the plans of a text.
 ///
 /// # Errors
-/// Fails with the diagnostics as text for people.
+/// Fails with the diagnostics in readable form.
 pub type Compile<A> = dyn Fn(&PlanSource) -> Result<CompiledPlans<A>, String> + Send;
 
 /// A request that takes longer than a turn allows.
@@ -46,8 +46,8 @@ pub(crate) struct Order<A: EngineAlphabet> {
 }
 
 pub(crate) enum Task<A: EngineAlphabet> {
-    /// Compile plans, which are then stored unless another robot has sent them. If a moment is given, the plan takes
-    /// over at that moment; the text must then have only one plan.
+    /// Compile plans, and store them unless another robot has sent them. If a moment is given, the plan takes over at
+    /// that moment; the text must then contain exactly one plan.
     Compile(PlanSource, Option<When>),
     /// Prepare a stored plan to take over at this moment.
     Begin(StoredPlan<A>, When),
@@ -56,22 +56,22 @@ pub(crate) enum Task<A: EngineAlphabet> {
 /// Result of an order.
 pub(crate) struct Outcome<A: EngineAlphabet> {
     pub(crate) ticket: u32,
-    /// The plans, or the diagnostics.
+    /// The plans, or the diagnostics in readable form.
     pub(crate) product: Result<Product<A>, String>,
 }
 
-/// The plans that result from an order.
+/// Plans that result from an order.
 pub(crate) struct Product<A: EngineAlphabet> {
     /// Plans to be stored, and their warnings.
     pub(crate) compiled: CompiledPlans<A>,
-    /// The plan that is to take over, before its first turn; `None` if none is.
+    /// The plan that takes over, before its first turn; `None` if no plan takes over.
     pub(crate) next: Option<Next<A>>,
 }
 
-/// A plan that is to take over, before its first turn.
+/// A plan that takes over, before its first turn.
 pub(crate) struct Next<A: EngineAlphabet> {
     pub(crate) plan: LoadedPlan<A>,
-    /// Names and texts of the plan's files, its own file first.
+    /// Name and text of each file of the plan, the plan's own file first.
     pub(crate) files: Arc<[(String, String)]>,
     pub(crate) when: When,
 }
@@ -98,7 +98,7 @@ impl<A: EngineAlphabet> Task<A> {
         matches!(self, Self::Compile(PlanSource::Peer { .. }, _))
     }
 
-    /// Returns `true` if the order is for a plan to take over.
+    /// Returns `true` if the order is for a plan that takes over.
     pub(crate) fn takes_over(&self) -> bool {
         match self {
             Self::Compile(_, when) => when.is_some(),
@@ -118,7 +118,7 @@ impl<A: EngineAlphabet> Task<A> {
                         return Err(format!("the text has several plans, and one of them can drive: {names}"));
                     }
                 };
-                // Only the operator stores plans, who can delete them.
+                // Plans of other robots are not stored: only the operator could delete them.
                 if matches!(source, PlanSource::Peer { .. }) {
                     compiled.plans.clear();
                 }

@@ -1,5 +1,5 @@
-//! Attributes of modules that a plan reads: their values in a turn, and those that are missing before the plan can
-//! begin (docs/src/reference/semantics.md, 2.5).
+//! Module attributes that a plan reads: their values in a turn, and the wait for missing ones before the plan can begin
+//! (docs/src/reference/semantics.md, 2.5).
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_runtime::{ModuleRead, Nanos, PUBLISHED, Published, PublishedNumber};
@@ -8,22 +8,22 @@ use crate::attribute::{AGE, AttributeName, Reading};
 use crate::board::{Board, Post};
 use crate::tree::listed;
 
-/// Time for which a plan waits for the attributes that it reads, in addition to the latency that a module declares.
+/// Time for which a plan waits for the attributes that it reads, in addition to the latency that the module declares.
 const PATIENCE: Nanos = Nanos(2_000_000_000);
 
 /// Reason why a plan cannot begin in this turn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Unready {
-    /// Attributes that have not been published yet.
+    /// These attributes have not been published yet.
     Missing(Vec<&'static ModuleRead>),
-    /// Sentence about an attribute whose kind is not the kind that the plan expects.
+    /// An attribute has another kind than the plan expects; contains a sentence about it.
     OtherKind(String),
 }
 
 /// Returns the values that a plan reads from modules at time `now`.
 ///
 /// # Errors
-/// Fails if some of them have not been published, or if an attribute has another kind.
+/// Fails if some attributes have not been published, or if an attribute has another kind.
 pub(super) fn published(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> Result<Published, Unready> {
     let mut numbers = Published::new(reads);
     let mut missing = Vec::new();
@@ -39,14 +39,14 @@ pub(super) fn published(reads: &'static [ModuleRead], board: &Board, now: Nanos)
     if missing.is_empty() { Ok(numbers) } else { Err(Unready::Missing(missing)) }
 }
 
-/// Returns the time for which a plan waits for attributes that have not been published.
+/// Returns the time for which a plan waits for attributes that were not published yet.
 pub(super) fn patience(missing: &[&ModuleRead], board: &Board) -> Nanos {
     let latency = |read: &&ModuleRead| Some(board.posts().get(board.place_of(read)?)?.latency);
     let longest = missing.iter().filter_map(latency).max().unwrap_or(Nanos::ZERO);
     Nanos(PATIENCE.0.saturating_add(longest.0))
 }
 
-/// Returns the error message about a plan that reads attributes which were not published in time.
+/// Returns the error message about a plan that reads attributes that were not published in time.
 pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
     let seconds = patience(missing, board).seconds();
     let is_other = |read: &&&ModuleRead| read.attribute != AGE || others(read.module, missing).next().is_none();
@@ -65,8 +65,8 @@ pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
     format!("the plan reads {paths}, which no module has published within {seconds} s{there_are}")
 }
 
-/// Returns the end of a sentence about an attribute that does not exist: the attributes of its module; or, if no such
-/// module is loaded, a similar name, and the way to load one.
+/// Returns the end of a sentence about an attribute that does not exist: it lists the attributes of the module or, if
+/// the module is not loaded, proposes a similar name and explains how to load a module.
 fn publishers(read: &ModuleRead, board: &Board) -> String {
     let ModuleRead { module, attribute, .. } = read;
     let own: Vec<_> = board.of(module).map(|post| &*post.name.attribute).collect();
@@ -83,8 +83,8 @@ fn publishers(read: &ModuleRead, board: &Board) -> String {
     format!("{near}\nhelp: no module `{module}` is loaded: `mdle run PLAN --module {module}=COMMAND` loads one{others}")
 }
 
-/// Returns the values that a running plan reads from modules at time `now`. Attributes of modules that were unloaded
-/// have no value.
+/// Returns the values that a running plan reads from modules at time `now`; attributes of unloaded modules have no
+/// value.
 pub(crate) fn current(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> Published {
     let mut numbers = Published::new(reads);
     for (place, read) in reads.iter().enumerate().take(PUBLISHED) {
@@ -110,7 +110,7 @@ pub(crate) fn check_kinds<'r>(reads: impl IntoIterator<Item = &'r ModuleRead>, b
 /// Checks that modules publish the attributes that safety rules read, with the kinds that the rules expect.
 ///
 /// # Errors
-/// Fails with a sentence if they do not.
+/// Fails with a sentence if an attribute is not published, or has another kind.
 pub(crate) fn check(reads: &[ModuleRead], board: &Board) -> Result<(), String> {
     let check = |read: &ModuleRead| match board.post(read.module, read.attribute) {
         Some(post) => check_kind(read, post).map_err(|sentence| format!("a safety rule {sentence}")),
@@ -124,8 +124,8 @@ pub(crate) fn check(reads: &[ModuleRead], board: &Board) -> Result<(), String> {
     reads.iter().try_for_each(check)
 }
 
-/// Returns the age, at time `now`, of the oldest of these attributes; an attribute that no module has published
-/// is as old as the run.
+/// Returns the age, at time `now`, of the oldest of these attributes; an attribute that was never published is as old
+/// as the run.
 pub(crate) fn oldest<'r>(reads: impl Iterator<Item = &'r ModuleRead>, board: &Board, now: Nanos) -> Nanos {
     let age = |read: &ModuleRead| {
         let at = match read.attribute {
@@ -137,10 +137,10 @@ pub(crate) fn oldest<'r>(reads: impl Iterator<Item = &'r ModuleRead>, board: &Bo
     reads.map(age).max().unwrap_or(Nanos::ZERO)
 }
 
-/// Compares the kind of an attribute with the unit in which a plan reads it.
+/// Checks that the kind of an attribute matches the unit in which a plan reads it.
 ///
 /// # Errors
-/// Fails with a sentence without a subject if they differ.
+/// Fails with a sentence, without its subject, if they do not match.
 fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), String> {
     let Post { name, about, .. } = post;
     let quantity = about.kind.quantity();
@@ -152,7 +152,7 @@ fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the value of the attribute `read` at time `now`; `None` if it has not been published. `reads` are all reads
+/// Returns the value of the attribute `read` at time `now`; `None` if it was not published. `reads` contains all reads
 /// of the plan, including `read`.
 fn number(read: &ModuleRead, reads: &[ModuleRead], board: &Board, now: Nanos) -> Option<PublishedNumber> {
     if read.attribute == AGE {
@@ -163,18 +163,18 @@ fn number(read: &ModuleRead, reads: &[ModuleRead], board: &Board, now: Nanos) ->
     value.number().map(|value| PublishedNumber { value, at: *at, age: now.since(*at) })
 }
 
-/// Returns the publication time of the oldest value of the module that is read or, if only the module's age is read, of
-/// its newest value. Returns `None` if a value has not been published.
+/// Returns the publication time of the oldest value that is read from this module; if only the module's age is read,
+/// returns the publication time of its newest value. Returns `None` if one of the values was not published.
 fn oldest_of(module: &str, reads: &[ModuleRead], board: &Board) -> Option<Nanos> {
     let mut attributes = others(module, reads).peekable();
     if attributes.peek().is_none() {
         return newest_of(module, board);
     }
-    // Without one of them there is no age.
+    // If one of the attributes was not published, the age is undefined.
     attributes.try_fold(Nanos(u64::MAX), |oldest, attribute| Some(oldest.min(published_at(module, attribute, board)?)))
 }
 
-/// Returns the names of the attributes of this module among `reads`, except its age.
+/// Returns the names of this module's attributes in `reads`, except its age.
 fn others<'r, R: std::borrow::Borrow<ModuleRead>>(
     module: &'r str,
     reads: &'r [R],

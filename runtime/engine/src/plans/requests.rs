@@ -1,5 +1,4 @@
-//! Requests of a front end: to compile, store, load, delete and begin plans, and to cancel a plan that is to
-//! take over.
+//! Requests of a front end: compile, store, load, delete and start plans, and cancel a plan that is about to take over.
 
 use std::io;
 use std::sync::Arc;
@@ -16,7 +15,7 @@ use super::stored::{MOST_STORED, StoredPlan};
 use super::{Plans, Spent};
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Permits requests with plans as texts. `compile` compiles the texts on a separate thread.
+    /// Permits requests that contain plans as text. `compile` compiles the text on a separate thread.
     ///
     /// # Errors
     /// Fails if the system cannot create the thread.
@@ -25,7 +24,7 @@ impl<A: EngineAlphabet> Plans<A> {
         Ok(())
     }
 
-    /// Permits requests with plans as texts in simulated time. Turns wait while `compile` compiles the texts.
+    /// Permits requests that contain plans as text, in simulated time. Turns wait while `compile` compiles the text.
     pub fn compile_at_once_with(&mut self, compile: Box<Compile<A>>) {
         self.compiler = Some(Compiler::AtOnce(compile, std::collections::VecDeque::new()));
     }
@@ -35,49 +34,49 @@ impl<A: EngineAlphabet> Plans<A> {
         self.peers.take_events()
     }
 
-    /// Stores a plan under its name, and replaces an earlier one of this name. An active plan continues. At most
+    /// Stores a plan under its name, and replaces an earlier plan with this name; an active plan continues. At most
     /// [`MOST_STORED`] plans are stored.
     ///
     /// # Errors
-    /// Fails with a sentence if there are too many.
+    /// Fails with a sentence if too many plans are stored.
     pub fn store(&mut self, plan: StoredPlan<A>) -> Result<(), String> {
         self.store_all(vec![plan])
     }
 
-    /// Returns the stored plans in the order of their names.
+    /// Returns the stored plans, sorted by name.
     pub fn stored(&self) -> impl Iterator<Item = &StoredPlan<A>> {
         self.stored.iter()
     }
 
-    /// Returns the stored plan of this name.
+    /// Returns the stored plan with this name.
     ///
     /// # Errors
-    /// Fails with a sentence if there is no plan of this name.
+    /// Fails with a sentence if no plan with this name is stored.
     pub fn stored_plan(&self, name: &str) -> Result<StoredPlan<A>, String> {
         self.stored.get(name).cloned().ok_or_else(|| self.no_plan(name))
     }
 
-    /// Deletes a stored plan; a plan that is active continues.
+    /// Deletes a stored plan. If the plan is active, it continues.
     ///
     /// # Errors
-    /// Fails with a sentence if there is no plan of this name.
+    /// Fails with a sentence if no plan with this name is stored.
     pub fn delete(&mut self, name: &str) -> Result<(), String> {
         let plan = self.stored.remove(name).ok_or_else(|| self.no_plan(name))?;
         self.spent.push(Box::new(plan));
         Ok(())
     }
 
-    /// Requests that the plans of a text be stored; returns the number of the request. The answer is
-    /// [`PlanEvent::Stored`] or [`PlanEvent::Refused`] at a later break.
+    /// Requests to store the plans of a text; returns the number of the request. The answer at a later turn break is
+    /// [`PlanEvent::Stored`] or [`PlanEvent::Refused`].
     pub fn load(&mut self, source: PlanSource) -> u32 {
         self.order(Task::Compile(source, None))
     }
 
     /// Requests that the plan of a text take over; returns the number of the request. The plan is also stored, unless
-    /// another robot has sent it. The answer at a later break is [`PlanEvent::Refused`], or [`PlanEvent::Armed`] and
-    /// then [`PlanEvent::Began`]. A later request supersedes this one if it is not compiled yet, and replaces its plan
-    /// if that is armed and has not begun. Requests of other robots do neither to requests of the operator: they are
-    /// refused while a plan of the operator is armed.
+    /// another robot has sent it. The answer at a later turn break is [`PlanEvent::Refused`], or [`PlanEvent::Armed`]
+    /// and then [`PlanEvent::Began`]. A later request supersedes this one if it is not compiled yet; if its plan is
+    /// armed but has not begun, a later request replaces the plan. A request of another robot never does this to a
+    /// request of the operator: it is refused while a plan of the operator is armed.
     pub fn swap(&mut self, source: PlanSource, when: When) -> u32 {
         self.order(Task::Compile(source, Some(when)))
     }
@@ -85,7 +84,7 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Requests that a stored plan take over, as [`Plans::swap`] does; returns the number of the request.
     ///
     /// # Errors
-    /// Fails with a sentence if there is no plan of this name.
+    /// Fails with a sentence if no plan with this name is stored.
     pub fn run(&mut self, name: &str, when: When) -> Result<u32, String> {
         let plan = self.stored_plan(name)?;
         Ok(self.order(Task::Begin(plan, when)))
@@ -115,8 +114,8 @@ impl<A: EngineAlphabet> Plans<A> {
         }
     }
 
-    /// Cancels the requests for plans to take over that wait for the compiler, and the armed plan. A text that is being
-    /// compiled is not cancelled.
+    /// Cancels requests for plans to take over that wait for the compiler, and the armed plan. Does not cancel a text
+    /// that is being compiled.
     pub fn cancel(&mut self) {
         if self.armed.is_some() {
             self.note(Change::Cancelled);
@@ -124,7 +123,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.take_back();
     }
 
-    /// Cancels the plans that are to take over, as [`Plans::cancel`] does, but does not note a change for the record.
+    /// Cancels plans that are about to take over, as [`Plans::cancel`] does, but does not record the change.
     pub(super) fn take_back(&mut self) {
         let waiting = self.compiler.as_ref().map_or([None, None], Compiler::take_back);
         for order in waiting.into_iter().flatten() {
@@ -144,7 +143,7 @@ impl<A: EngineAlphabet> Plans<A> {
         format!("no plan `{name}` is stored{near}")
     }
 
-    /// Gives an order to the compiler; returns the number of the request. A plan of another robot that must not take
+    /// Passes an order to the compiler; returns the number of the request. A plan of another robot that must not take
     /// over is refused instead.
     fn order(&mut self, task: Task<A>) -> u32 {
         self.last = self.last.saturating_add(1);
@@ -196,7 +195,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.tell(PlanEvent::Armed(ticket));
     }
 
-    /// Reports that another plan is armed instead of this one, and drops this one.
+    /// Reports that another plan was armed instead of `plan`, and drops `plan`.
     pub(super) fn replaced(&mut self, plan: Running<A>) {
         self.tell(PlanEvent::Replaced(plan.ticket, Arc::clone(&plan.name)));
         self.discard(plan);

@@ -1,4 +1,4 @@
-//! A plan that runs, or is about to, with its own clock.
+//! A plan that runs or is about to run, with its own clock.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use mdle_runtime::{Alphabet, Machine, ModuleRead, Nanos, Plan, Published, Turn, 
 use super::reads::{self, Unready};
 use crate::board::Board;
 
-/// Alphabet of a robot whose plans an engine runs; its quarks can move between threads.
+/// Alphabet of a robot whose plans an engine can run: its quarks can move between threads.
 pub trait EngineAlphabet:
     Alphabet<
         Output: Clone + Send + Sync + 'static,
@@ -33,23 +33,23 @@ where
 
 /// A plan of the engine.
 pub(crate) struct Running<A: Alphabet> {
-    /// Number of the request that introduced the plan.
+    /// Number of the request for the plan.
     pub(crate) ticket: u32,
-    /// Number of the plan among those that have begun, from 1; 0 before it begins.
+    /// Number of the plan, counting from 1 the plans that have begun; 0 before the plan begins.
     pub(crate) number: u32,
     pub(crate) name: Arc<str>,
-    /// The plan before its first turn; `None` afterwards.
+    /// The loaded plan before its first turn; `None` afterwards.
     ready: Option<LoadedPlan<A>>,
     pub(crate) machine: Option<Machine<LoadedPlan<A>>>,
-    /// Time, on the engine's clock, at which the plan began, plus the time for which it was suspended.
+    /// Start time of the plan on the engine's clock. Time for which the plan was suspended is added.
     pub(crate) zero: Nanos,
     /// Attributes of modules that the plan reads.
     pub(crate) reads: &'static [ModuleRead],
     /// Names of the other robots that the plan refers to.
     pub(crate) robots: Box<[&'static str]>,
-    /// Time at which the plan began to wait for the attributes that it reads; `None` if it has not begun to wait.
+    /// Time since which the plan has been waiting for the attributes that it reads; `None` if it has never waited.
     waits_since: Option<Nanos>,
-    /// `true` if the plan was suspended before this turn.
+    /// `true` if the plan continues in this turn after it was suspended.
     is_back: bool,
 }
 
@@ -75,7 +75,7 @@ impl<A: Alphabet> Running<A> {
     /// Returns the values that the plan reads from modules in the turn at `now`; `None` if the plan cannot begin yet.
     ///
     /// # Errors
-    /// Fails with a sentence that says why the plan never begins.
+    /// Fails with a sentence if the plan can never begin.
     pub(crate) fn published(&mut self, board: &Board, now: Nanos) -> Result<Option<Published>, String> {
         if self.ready.is_none() {
             return Ok(Some(reads::current(self.reads, board, now)));
@@ -89,7 +89,7 @@ impl<A: Alphabet> Running<A> {
         }
     }
 
-    /// Makes a turn at the engine's time `now`. The plan's time is zero in its first turn.
+    /// Makes a turn at `now` on the engine's clock. The plan's own time is zero in its first turn.
     pub(crate) fn turn<W: Watch>(&mut self, y: &A::Output, now: Nanos, watch: &mut W) -> Turn<A::Input> {
         if let Some(plan) = self.ready.take() {
             self.zero = now;
@@ -103,15 +103,15 @@ impl<A: Alphabet> Running<A> {
         machine.turn(y, t, watch)
     }
 
-    /// Suspends the plan. `y` is the output that followed the plan's last input.
+    /// Suspends the plan. `y` is the output after the plan's last input.
     pub(crate) fn suspend(&mut self, y: &A::Output) {
         if let Some(machine) = &mut self.machine {
             machine.suspend(y);
         }
     }
 
-    /// Continues the plan at `now` as if no time had passed since it was suspended. The law of its atom restarts,
-    /// because the robot may have moved.
+    /// Continues the plan at `now` as if no time had passed since it was suspended. The law of the current atom
+    /// restarts, because the robot may have moved.
     pub(crate) fn resume(&mut self, suspended: Nanos, now: Nanos) {
         self.zero = Nanos(self.zero.0.saturating_add(now.since(suspended).0));
         self.is_back = true;

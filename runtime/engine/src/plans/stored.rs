@@ -1,4 +1,4 @@
-//! The stored plans, which are compiled and found by name.
+//! The stored plans, which are compiled and can be started by name.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -10,11 +10,11 @@ use super::EngineAlphabet;
 /// Maximum number of stored plans.
 pub const MOST_STORED: usize = 64;
 
-/// A plan that was compiled.
+/// A compiled plan.
 pub struct StoredPlan<A: EngineAlphabet> {
     /// Name of the plan.
     pub name: Arc<str>,
-    /// Name and text of each file of the plan, its own file first.
+    /// Name and text of each file of the plan, the plan's own file first.
     pub files: Arc<[(String, String)]>,
     /// The plan before it begins.
     pub loaded: Arc<Loaded<A>>,
@@ -35,7 +35,7 @@ impl<A: EngineAlphabet> StoredPlan<A> {
     }
 }
 
-/// Plans by their names.
+/// Stored plans by name.
 pub(crate) struct Store<A: EngineAlphabet>(BTreeMap<Arc<str>, StoredPlan<A>>);
 
 impl<A: EngineAlphabet> Default for Store<A> {
@@ -45,10 +45,10 @@ impl<A: EngineAlphabet> Default for Store<A> {
 }
 
 impl<A: EngineAlphabet> Store<A> {
-    /// Stores plans; returns the earlier plans that they replace.
+    /// Stores plans; returns the earlier plans that were replaced.
     ///
     /// # Errors
-    /// Returns the plans, without any change, if there would be more than [`MOST_STORED`].
+    /// Returns the given plans, without any change, if more than [`MOST_STORED`] plans would be stored.
     pub(crate) fn put(&mut self, plans: Vec<StoredPlan<A>>) -> Result<Vec<StoredPlan<A>>, Vec<StoredPlan<A>>> {
         let new = plans.iter().filter(|plan| !self.0.contains_key(&plan.name)).count();
         if self.0.len().saturating_add(new) > MOST_STORED {

@@ -14,25 +14,25 @@ use super::running::Running;
 use super::{Driving, EngineAlphabet, NoTrial, PlanEvent, Plans, When};
 use crate::board::Board;
 
-/// Maximum number of events that are kept.
+/// Maximum number of events kept for a session.
 const MOST_EVENTS: usize = 256;
 
 /// Result of the plan's turn.
 pub(crate) enum PlanTurn<U> {
     /// The plan has made its turn.
     Made(Turn<U>),
-    /// The plan has not ended its turn yet.
+    /// The plan has not finished its turn yet.
     Late,
-    /// The plan panicked: the message of the panic.
+    /// The plan panicked; contains the panic message.
     Panicked(String),
 }
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Puts the plan's turn, with output `y` at time `now`, on the desk of its module; returns the values that the plan
-    /// reads from modules. A plan that cannot begin yet makes no turn, and `None` is returned.
+    /// Puts the plan's turn, with output `y` at time `now`, on the desk of the plan module; returns the values that the
+    /// plan reads from modules. Returns `None` if the plan cannot begin yet and therefore makes no turn.
     ///
     /// # Errors
-    /// Fails with a sentence that says why the first plan never begins.
+    /// Fails with a sentence if the first plan can never begin.
     pub(crate) fn take_off(&mut self, y: &A::Output, now: Nanos, board: &Board) -> Result<Option<Published>, String> {
         let next = self.ready_to_follow(now, board);
         let Some(mut flight) = self.current.take() else { return Ok(None) };
@@ -61,7 +61,7 @@ impl<A: EngineAlphabet> Plans<A> {
         published
     }
 
-    /// Takes the armed plan if it can begin in the turn at `now`; returns it with its moment and the values that it
+    /// Takes the armed plan if it can begin in the turn at `now`; returns the plan, its moment, and the values that it
     /// reads from modules.
     fn ready_to_follow(&mut self, now: Nanos, board: &Board) -> Option<(Running<A>, When, Published)> {
         let (mut next, when) = self.armed.take_if(|_| self.current.is_some())?;
@@ -76,8 +76,7 @@ impl<A: EngineAlphabet> Plans<A> {
         None
     }
 
-    /// Takes the plan's turn at time `now` from the desk, and puts the transitions of the active plan into
-    /// `transitions`.
+    /// Takes the plan's turn at time `now` from the desk, and writes the active plan's transitions to `transitions`.
     pub(crate) fn land(&mut self, now: Nanos, transitions: &mut Transitions) -> PlanTurn<A::Input> {
         let Landed { flight, replaced, panic } = self.desk.take();
         if let Some(message) = panic {
@@ -85,7 +84,7 @@ impl<A: EngineAlphabet> Plans<A> {
         }
         let Some(mut flight) = flight else { return PlanTurn::Late };
         self.aloft = None;
-        // The input of a turn that was late comes too late.
+        // A late turn's input is out of date.
         let turn = flight.turn.take().filter(|_| flight.at == now);
         if let Some(old) = replaced {
             self.begins(old, &mut flight.current, now);
@@ -100,7 +99,7 @@ impl<A: EngineAlphabet> Plans<A> {
             if self.armed.is_none() {
                 self.armed = Some((next, when));
             } else {
-                // The other plan was armed while the turn was late.
+                // Another plan was armed while the turn was late.
                 self.replaced(next);
             }
         }
@@ -109,9 +108,9 @@ impl<A: EngineAlphabet> Plans<A> {
         turn.map_or(PlanTurn::Late, PlanTurn::Made)
     }
 
-    /// Collects, at a break, the outcome of one order of the compiler.
+    /// Collects, at a turn break, the outcome of one order to the compiler.
     pub(crate) fn arm(&mut self) {
-        // Nobody takes them from a run without a session.
+        // In a run without a session, nothing takes the events.
         let old = self.events.len().saturating_sub(MOST_EVENTS);
         self.events.drain(..old);
         let Some(Outcome { ticket, product }) = self.compiler.as_mut().and_then(Compiler::done) else { return };
@@ -130,7 +129,7 @@ impl<A: EngineAlphabet> Plans<A> {
             self.store_all(compiled.plans).map(|()| (names, next))
         });
         match product {
-            // It was asked for before the rule, and compiled after it.
+            // The request was made before the rule replaced the plan, but compiled afterwards.
             Ok((_, Some(next))) if ticket <= self.overruled => {
                 self.spent.push(Box::new(next));
                 self.tell(PlanEvent::Cancelled(ticket));
@@ -156,8 +155,8 @@ impl<A: EngineAlphabet> Plans<A> {
         Ok(())
     }
 
-    /// Replaces the active plan at once and without a trial, for a supervisor. All plans that were to take over are
-    /// cancelled, including those that are being compiled, and plans of other robots are barred.
+    /// Replaces the active plan at once and without a trial, on behalf of a supervisor. Cancels all plans that were
+    /// about to take over, including those that are being compiled, and bars plans of other robots.
     pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
         self.peers.bar(self.last, REPLACED);
         self.take_back();
@@ -174,8 +173,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.tell(PlanEvent::Began(self.last));
     }
 
-    /// Refuses plans of other robots for this reason, until a plan that the operator requests after this call has
-    /// begun. Returns `true` if a plan of another robot was armed.
+    /// Refuses plans of other robots for this reason until a plan begins that the operator requests after this call.
+    /// Returns `true` if a plan of another robot was armed.
     pub(crate) fn bar_peers(&mut self, reason: &'static str) -> bool {
         self.peers.bar(self.last, reason);
         if let Some(order) = self.compiler.as_ref().and_then(Compiler::take_back_sent) {
@@ -188,12 +187,12 @@ impl<A: EngineAlphabet> Plans<A> {
         true
     }
 
-    /// Returns `true` while the turn of the active plan is late, or after the plan has panicked.
+    /// Returns `true` while the active plan's turn is late, and after the plan has panicked.
     pub(crate) fn is_late(&self) -> bool {
         self.current.is_none()
     }
 
-    /// Returns the attributes of modules that the active, the next and the suspended plan read.
+    /// Returns the module attributes that the active, the next and the suspended plan read.
     pub(crate) fn reads(&self) -> impl Iterator<Item = &'static ModuleRead> + Clone {
         let next = |flight: &Flight<A>| flight.next.as_ref().map(|(next, _)| next.reads);
         let current = self.current.iter().flat_map(move |flight| [Some(flight.current.reads), next(flight)]).flatten();
@@ -214,7 +213,7 @@ impl<A: EngineAlphabet> Plans<A> {
         PlanModule(Arc::clone(&self.desk))
     }
 
-    /// Records that a plan has replaced `old` in the turn at `now`, and suspends `old`.
+    /// Records that the plan `new` has replaced `old` in the turn at `now`, and suspends `old`.
     fn begins(&mut self, old: Running<A>, new: &mut Running<A>, now: Nanos) {
         new.number = self.next_number();
         if let Some((older, _)) = self.suspended.replace((old, now)) {
@@ -233,15 +232,15 @@ impl<A: EngineAlphabet> Plans<A> {
         self.begun
     }
 
-    /// Records that a plan is active from now on, for this reason; returns the request number of the plan that was
-    /// active before.
+    /// Records that a plan is active from now on, for this reason; returns the request number of the previously active
+    /// plan.
     fn drives(&mut self, plan: &Running<A>, reason: String) -> u32 {
         let driving = Driving { number: plan.number, ticket: plan.ticket, name: Arc::clone(&plan.name) };
         self.reason = reason;
         std::mem::replace(&mut self.driving, driving).ticket
     }
 
-    /// Replaces the active plan. If the active plan panicked or hangs, its thread keeps it.
+    /// Replaces the active plan. If the active plan has panicked or hangs, it stays with its thread.
     fn take_over(&mut self, plan: Running<A>) {
         match &mut self.current {
             Some(flight) => {

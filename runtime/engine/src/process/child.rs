@@ -1,6 +1,6 @@
-//! A child process in a process group of its own, and the exchange of lines with it.
+//! A child process in its own process group, which exchanges lines with this process.
 //!
-//! A shell in the group guards it: when this process has ended, for whatever reason, the shell kills the group.
+//! A shell in the group guards it: when this process ends for any reason, the shell kills the group.
 
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::os::unix::process::CommandExt as _;
@@ -18,11 +18,11 @@ use super::shown;
 const LONGEST: usize = 65_536;
 /// Time for which a child may continue after the end of its input, and again after SIGTERM.
 const FAREWELL: Duration = Duration::from_millis(300);
-/// Maximum time that ending a child takes.
+/// Maximum duration of ending a child.
 pub(super) const LONGEST_FAREWELL: Duration = Duration::from_secs(2);
-/// Time between two checks for the end of a wait.
+/// Interval at which a wait checks whether it is over.
 const LOOK: Duration = Duration::from_millis(10);
-/// Program of the guarding shell, whose input ends when this process has ended.
+/// Script of the guarding shell, which kills the group when its input ends because this process has ended.
 const GUARD: &str = "trap '' HUP INT TERM; read line; kill -KILL 0";
 const SHELL: &str = "/bin/sh";
 
@@ -35,23 +35,23 @@ pub(super) struct Child {
     stdout: ChildStdout,
     /// The guarding shell; `None` once the group is killed.
     guard: Option<process::Child>,
-    /// Bytes that were read after the last line.
+    /// Bytes that were read but belong to later lines.
     unread: Vec<u8>,
 }
 
-/// Reason why a child has sent no line.
+/// Reason why a child sent no line.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Silence {
     /// The line is no longer needed.
     Over,
     /// The child did not send the line within the maximum wait.
     Late,
-    /// The child cannot continue: the reason, as a sentence.
+    /// The child cannot continue; contains the reason as a sentence.
     Fault(String),
 }
 
 impl Child {
-    /// Starts a child with this command line of the shell; the child shares the standard error of this process.
+    /// Starts a child with this shell command line. The child shares the standard error of this process.
     pub(super) fn start(command: &str) -> io::Result<Self> {
         let shell = || Command::new(SHELL);
         let mut guard = shell();
@@ -76,13 +76,13 @@ impl Child {
         Ok(child)
     }
 
-    /// Returns the next line, without its line break. Fails if `is_over` returns `true` first, or after `patience`.
+    /// Returns the next line, without its line break. Fails once `is_over` returns `true`, or after `patience`.
     pub(super) fn line(&mut self, patience: Duration, is_over: impl Fn() -> bool) -> Result<Vec<u8>, Silence> {
         self.exchange(&[], patience, is_over)
     }
 
-    /// Sends a line, and returns the answer as [`Child::line`] does. A child that has printed something before the line
-    /// is sent is refused, because it would answer every line too early.
+    /// Sends a line, and returns the answer as [`Child::line`] does. A child that has already printed something before
+    /// the line is sent is refused, because its answers would be one line ahead from then on.
     pub(super) fn ask(
         &mut self,
         line: &[u8],
@@ -130,7 +130,7 @@ impl Child {
         }
     }
 
-    /// Waits briefly until there is data to read or, if `writes` is `true`, room to write.
+    /// Waits briefly for data to read or, if `writes` is `true`, for room to write.
     fn wait(&self, writes: bool) {
         let stdin = self.stdin.as_ref().filter(|_| writes);
         let mut fds = vec![PollFd::new(&self.stdout, PollFlags::IN)];
@@ -171,13 +171,13 @@ impl Child {
 
     /// Kills the process group at once.
     pub(super) fn kill(&mut self) {
-        // Nothing may be sent to the group once its leader is waited for: its number is free then.
+        // Once the leader of the group is waited for, its number may be reused: nothing may be sent to the group then.
         if let Some(mut guard) = self.guard.take() {
             kill(&mut guard);
         }
     }
 
-    /// Returns the reason why the child, which has closed this stream, cannot continue.
+    /// Returns the reason why the child cannot continue after it has closed this stream.
     fn ended(&mut self, stream: &str) -> Silence {
         let _ = self.read();
         let half = self.unread.rsplit(|byte| *byte == b'\n').next().filter(|half| !half.is_empty());
@@ -188,7 +188,7 @@ impl Child {
         })
     }
 
-    /// Waits for the end of the child, at most for this time; returns its status if it has ended.
+    /// Waits for the child to end, at most for this time; returns its status if it has ended.
     fn status_within(&mut self, time: Duration) -> Option<ExitStatus> {
         let begun = Instant::now();
         loop {
@@ -216,12 +216,12 @@ impl Drop for Child {
     }
 }
 
-/// Returns the process group that a shell guards. The group exists until the shell is waited for.
+/// Returns the process group that a shell guards. The group exists until the shell has been waited for.
 fn group(guard: &process::Child) -> Pid {
     Pid::from_child(guard)
 }
 
-/// Kills a process group with its guard.
+/// Kills a process group, including its guard.
 fn kill(guard: &mut process::Child) {
     let _ = kill_process_group(group(guard), Signal::KILL);
     let _ = guard.wait();

@@ -1,4 +1,4 @@
-//! The first line of a child process: the attributes that it publishes and reads.
+//! The declaration, the first line of a child process: attributes that the child publishes and reads.
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_runtime::{Nanos, Printable};
@@ -17,7 +17,7 @@ const KEYS: [&str; 3] = ["publishes", "reads", "latency"];
 pub(super) struct Declaration {
     publishes: Vec<(String, Form)>,
     reads: Vec<(AttributeName, Form)>,
-    /// Time, on the clock of stepped time, from sending a line to the child until its answer.
+    /// In stepped time, the time from sending a line to the child until its answer.
     latency: Nanos,
 }
 
@@ -25,7 +25,7 @@ impl Declaration {
     /// Reads the first line of a child.
     ///
     /// # Errors
-    /// Fails with a sentence if the line is no declaration.
+    /// Fails with a sentence if the line is not a declaration.
     pub(super) fn read(line: &[u8]) -> Result<Self, String> {
         let object = object(line)?;
         let refused = |sentence: String| format!("its declaration {} is wrong: {sentence}", shown(line));
@@ -61,7 +61,7 @@ impl Declaration {
         declare.latency(self.latency);
     }
 
-    /// Returns the line for the child after the break at `now`: each value that it reads, or `null`.
+    /// Returns the line that the child gets after the turn break at `now`: each value that it reads, or `null`.
     pub(super) fn question(&self, now: Nanos, readings: &[Option<Reading>]) -> String {
         let values = self.reads.iter().zip(readings).map(|((AttributeName { module, attribute }, form), reading)| {
             let value = reading.as_ref().map_or(Json::Null, |reading| form.write(&reading.value));
@@ -75,7 +75,7 @@ impl Declaration {
     /// Returns the values in an answer of the child, each with the position of its attribute in the declaration.
     ///
     /// # Errors
-    /// Fails with a sentence if the line is no answer.
+    /// Fails with a sentence if the line is not an answer.
     pub(super) fn answer(&self, line: &[u8]) -> Result<Vec<(usize, Value)>, String> {
         let values = object(line)?.into_iter().filter(|(_, value)| !value.is_null());
         let read = values.map(|(name, value)| {
@@ -93,7 +93,7 @@ impl Declaration {
     }
 }
 
-/// Returns the names and forms in the table `key` of a declaration; none if there is no such table.
+/// Returns the names and forms in the table `key` of a declaration; an empty list if there is no such table.
 fn forms(object: &Map<String, Json>, key: &str, example: &str) -> Result<Vec<(String, Form)>, String> {
     let Some(table) = object.get(key) else { return Ok(Vec::new()) };
     let table =

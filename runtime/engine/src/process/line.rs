@@ -1,4 +1,4 @@
-//! Values in the lines of a child process.
+//! Converts values to and from the JSON lines of a child process.
 
 use mdle_compiler::alphabet::Unit;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
@@ -7,7 +7,7 @@ use serde_json::{Map, Value as Json, json};
 use super::shown;
 use crate::attribute::{AttributeKind, Value};
 
-/// The kinds that have a word of their own, each with its word.
+/// Kinds without units, each with its word in a declaration.
 const WORDS: [(&str, AttributeKind); 6] = [
     ("flag", AttributeKind::Flag),
     ("integer", AttributeKind::Integer),
@@ -17,7 +17,7 @@ const WORDS: [(&str, AttributeKind); 6] = [
     ("numbers", AttributeKind::Numbers),
 ];
 
-/// Kinds of quantities; a unit is the word for a quantity.
+/// Kinds with units; in a declaration, the unit is the word for the kind.
 const QUANTITIES: [AttributeKind; 6] = [
     AttributeKind::Length,
     AttributeKind::Speed,
@@ -27,7 +27,7 @@ const QUANTITIES: [AttributeKind; 6] = [
     AttributeKind::Time,
 ];
 
-/// Kind of the values of an attribute, and the unit of their numbers in lines.
+/// Kind of an attribute's values, and the unit of their numbers in lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Form {
     pub(super) kind: AttributeKind,
@@ -35,7 +35,7 @@ pub(super) struct Form {
 }
 
 impl Form {
-    /// Returns the form with this word: a unit, or the name of a kind without units; `None` for any other word.
+    /// Returns the form for this word: a unit, or the name of a kind without units; `None` for any other word.
     pub(super) fn from_word(word: &str) -> Option<Self> {
         if let Some((_, kind)) = WORDS.into_iter().find(|(name, _)| *name == word) {
             return Some(Self { kind, unit: None });
@@ -95,7 +95,7 @@ impl Form {
         }
     }
 
-    /// Returns a value of this form for a line; a number that is not finite is `null`.
+    /// Converts a value to this form for a line; a number that is not finite becomes `null`.
     pub(super) fn write(self, value: &Value) -> Json {
         match value {
             Value::Flag(flag) => json!(flag),
@@ -118,8 +118,8 @@ impl Form {
     }
 }
 
-/// Returns a number from a line; `None` if the value is not a number. Infinite numbers and NaN, which JSON does not
-/// have, are texts here.
+/// Reads a number from a line; `None` if the value is not a number. Infinite numbers and NaN, which JSON cannot
+/// represent, are strings here.
 fn number(json: &Json) -> Option<f64> {
     match json.as_str() {
         Some("NaN") => Some(f64::NAN),
@@ -130,7 +130,7 @@ fn number(json: &Json) -> Option<f64> {
     }
 }
 
-/// Converts seconds to a time; `None` if they are negative, not finite or too many.
+/// Converts seconds to a time; `None` if they are negative, not finite or too large.
 pub(super) fn nanos(seconds: f64) -> Option<Nanos> {
     let time = std::time::Duration::try_from_secs_f64(seconds).ok()?;
     u64::try_from(time.as_nanos()).ok().map(Nanos)
@@ -141,10 +141,10 @@ fn pose(numbers: &[f64]) -> Option<Pose> {
     Some(Pose { x: Meters(*x), y: Meters(*y), theta: Radians(*theta) })
 }
 
-/// Reads a line that is a JSON object. Accepts `NaN` and `Infinity`, which JSON does not have, but Python prints.
+/// Reads a line that is a JSON object. Accepts `NaN` and `Infinity`, which are not JSON, but which Python prints.
 ///
 /// # Errors
-/// Fails with a sentence if the line is no JSON object.
+/// Fails with a sentence if the line is not a JSON object.
 pub(super) fn object(line: &[u8]) -> Result<Map<String, Json>, String> {
     let refused = |reason: String| {
         format!(
@@ -166,7 +166,7 @@ pub(super) fn object(line: &[u8]) -> Result<Map<String, Json>, String> {
     }
 }
 
-/// Puts quotes around the words for numbers that are not finite, except in texts.
+/// Puts quotes around the words for numbers that are not finite, except inside strings.
 fn quoted(text: &str) -> String {
     const WORDS: [&str; 3] = ["-Infinity", "Infinity", "NaN"];
     let (mut result, mut rest, mut is_text) = (String::new(), text, false);

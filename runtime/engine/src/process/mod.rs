@@ -1,8 +1,8 @@
 //! `/lib/process`: a child process in any language as a background module. It exchanges lines of JSON on its
 //! standard input and output (docs/src/own_module.md).
 //!
-//! The first line of the child declares its attributes. After each turn break at which it waits, it gets a line
-//! with the values that it reads, and answers with a line of values that it publishes at the next break.
+//! The child's first line declares its attributes. At each turn break at which it waits, the child gets a line with the
+//! values that it reads, and answers with a line of values, which are published at the next turn break.
 
 mod child;
 mod declaration;
@@ -22,21 +22,21 @@ use declaration::Declaration;
 const DECLARATION: Duration = Duration::from_secs(10);
 /// Maximum time from sending a line to the child until its answer.
 const ANSWER: Duration = Duration::from_secs(10);
-/// Maximum number of characters of a child's line that a message shows.
+/// Maximum number of characters of a child's line that are shown in a message.
 const SHOWN: usize = 60;
 
-/// A module whose turns a child process makes.
+/// A background module whose values a child process computes.
 struct Process {
     child: Child,
     declaration: Declaration,
 }
 
 impl<Y> Candidate<Y> {
-    /// Starts a child process with the command line `command`, which `/bin/sh` reads, and returns a background
-    /// module of this name for it. The child ends with the module. It has ten seconds to declare itself.
+    /// Starts a child process with the command line `command`, which `/bin/sh` interprets, and returns a background
+    /// module with this name for it. The child ends with the module. It has ten seconds to send its declaration.
     ///
     /// # Errors
-    /// Fails if the name is invalid, if the child cannot be started, if its first line is no declaration, or if
+    /// Fails if the name is invalid, if the child cannot be started, if its first line is not a declaration, or if
     /// `request` is made before the declaration.
     pub fn process(name: &str, command: &str, request: &StopRequest) -> Result<Self, Refusal> {
         if !is_name(name) {
@@ -69,20 +69,20 @@ impl Background for Process {
         let Self { mut child, declaration } = *self;
         let end = converse(&mut child, &declaration, &mut exchange);
         if end.is_err() {
-            // The break is not to wait for the farewell of a child that breaks the rules.
+            // The turn break must not wait for a child that violates the protocol to end by itself.
             child.kill();
         }
         end
     }
 }
 
-/// Passes lines between a child and the breaks until the module is to end.
+/// Passes lines between a child and the turn breaks until the module has to end.
 ///
 /// # Errors
-/// Fails if the child breaks the protocol.
+/// Fails if the child violates the protocol.
 fn converse(child: &mut Child, declaration: &Declaration, exchange: &mut Exchange) -> Result<(), Fault> {
     let mut values = Vec::new();
-    // The first break has the first values for the child.
+    // The first turn break supplies the first values for the child.
     while exchange.exchange(|offer| values.drain(..).for_each(|(place, value)| offer.put(place, value))).is_ok() {
         let (now, readings) = exchange.readings();
         let question = declaration.question(now, readings);
@@ -99,7 +99,7 @@ fn converse(child: &mut Child, declaration: &Declaration, exchange: &mut Exchang
     Ok(())
 }
 
-/// Returns a line of a child as messages show it.
+/// Returns a line of a child as it is shown in messages.
 fn shown(line: &[u8]) -> String {
     let text = String::from_utf8_lossy(line);
     let mut start: String = text.chars().take(SHOWN).collect();

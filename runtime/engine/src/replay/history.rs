@@ -1,4 +1,4 @@
-//! Collects the inputs of an engine's turns besides the robot's outputs: values of modules that plans and safety rules
+//! Collects the inputs of an engine's turns other than the robot's outputs: module values that plans and safety rules
 //! read, states of other robots, recorded paths, and changes of plans.
 
 use mdle_record::Change;
@@ -7,10 +7,10 @@ use mdle_runtime::{Links, ModuleRead, Nanos, Peer, StoredPath};
 use crate::attribute::{AGE, AttributeKind, AttributeName};
 use crate::board::{Board, Post};
 
-/// The changes that a record of the run needs.
+/// Changes that the record of a run needs.
 #[derive(Debug, Default)]
 pub(crate) struct History {
-    /// The attributes that the record contains, by their numbers; `None` for attributes that were removed.
+    /// Attributes that the record contains, by number; `None` for a removed attribute.
     known: Vec<Option<Known>>,
     /// Changes of the current turn.
     changes: Vec<Change>,
@@ -21,13 +21,13 @@ pub(crate) struct History {
 struct Known {
     name: AttributeName,
     kind: AttributeKind,
-    /// Time and bits of the value that was recorded last; `None` before the first.
+    /// Time and bits of the last recorded value; `None` before the first.
     reading: Option<(Nanos, u64)>,
 }
 
 impl History {
-    /// Begins a turn with the changes of plans since the last turn. `reads` are the attributes that plans and safety
-    /// rules read, or may read in later turns.
+    /// Begins a turn with the changes of plans since the last turn. `reads` contains the attributes that plans and
+    /// safety rules read now or may read in later turns.
     pub(crate) fn begin(
         &mut self,
         plans: Vec<Change>,
@@ -54,7 +54,7 @@ impl History {
         self.changes.push(change);
     }
 
-    /// Records the states of other robots that are known in the current turn.
+    /// Records the states of other robots as known in the current turn.
     pub(crate) fn heard(&mut self, links: &Links) {
         let peers = links.peers().map(|Peer { name, rounds, state }| Change::Peer {
             name: (*name).to_owned(),
@@ -64,7 +64,7 @@ impl History {
         self.changes.extend(peers);
     }
 
-    /// Records that a newly recorded path has replaced the path with its name.
+    /// Records that a newly recorded path has replaced the path with the same name.
     pub(crate) fn replaced(&mut self, StoredPath { name, setpoints }: &StoredPath) {
         self.changes.push(Change::Path { name: (*name).to_owned(), setpoints: setpoints.to_vec() });
     }
@@ -74,7 +74,7 @@ impl History {
         std::mem::take(&mut self.changes)
     }
 
-    /// Records which attributes were removed from the board, including those that were added again since.
+    /// Records which attributes were removed from the board, including attributes that were added again afterwards.
     fn forget(&mut self, board: &Board) {
         for (number, known) in (0..).zip(&mut self.known) {
             let has_gone = |known: &mut Known| {
@@ -89,7 +89,7 @@ impl History {
         }
     }
 
-    /// Records an attribute that is new, or whose value is new.
+    /// Records an attribute if it or its value is new.
     fn see(&mut self, post: &Post) {
         let is_same = |known: &Option<Known>| known.as_ref().is_some_and(|known| known.name == post.name);
         let number = self.known.iter().position(is_same).unwrap_or_else(|| {

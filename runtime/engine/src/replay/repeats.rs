@@ -1,5 +1,5 @@
-//! The changes of a recorded run, as an engine repeats them: the board has the values that modules published,
-//! without the modules.
+//! Repeats the changes of a recorded run in an engine. The board contains the values that modules published, although
+//! the modules themselves are not loaded.
 
 use mdle_record::Change;
 use mdle_runtime::{Links, Peer, PeerState};
@@ -7,10 +7,10 @@ use mdle_runtime::{Links, Peer, PeerState};
 use crate::attribute::{AttributeKind, AttributeName, Reading, Value};
 use crate::board::Board;
 
-/// The state of a repeated run.
+/// State of a replayed run.
 #[derive(Debug, Default)]
 pub(crate) struct Repeats {
-    /// The attributes of the record, by their numbers.
+    /// Attributes of the record, by number.
     attributes: Vec<(AttributeName, AttributeKind)>,
     /// Name, rounds and known state of each other robot in the current turn.
     peers: Vec<(String, u64, Option<PeerState>)>,
@@ -23,18 +23,18 @@ enum PlanProgress {
     /// The plan made its turn in time.
     #[default]
     Made,
-    /// No thread had begun the turn in time.
+    /// No thread started the turn in time.
     Skipped,
-    /// The turn had begun, but was not done in time.
+    /// A thread started the turn, but did not finish it in time.
     Late,
-    /// The plan was still busy with a turn that it had begun earlier.
+    /// The plan was still busy with an earlier turn.
     Away,
-    /// The plan had finished a turn that it had begun earlier.
+    /// The plan finished an earlier turn.
     Back,
 }
 
 impl Repeats {
-    /// Repeats a change of an attribute, of another robot, or of the progress of the plan's turn; ignores other
+    /// Repeats a change of an attribute, of another robot, or of the progress of the plan's turn; ignores all other
     /// changes.
     pub(crate) fn repeat(&mut self, change: &Change, board: &mut Board) {
         match change {
@@ -68,7 +68,7 @@ impl Repeats {
         }
     }
 
-    /// Returns the links to the robots with these names, with the states that were known in the recorded turn.
+    /// Returns the links to the robots with these names, with their states as known in the recorded turn.
     pub(crate) fn links(&self, robots: impl Iterator<Item = &'static str>) -> Links {
         let mut links = Links::NONE;
         for name in robots {

@@ -1,4 +1,4 @@
-//! The conditions of guards, compiled and loaded for a robot.
+//! Compiles and loads the conditions of guards for a robot.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -14,15 +14,15 @@ use mdle_runtime::{Machine, ModuleRead, Nanos, PUBLISHED, Plan as _};
 
 use super::{Condition, Guard};
 
-/// The conditions of the guards of a safety file.
+/// Conditions of the guards in a safety file.
 pub struct Conditions<A: runtime::Alphabet> {
     loaded: Vec<Arc<Loaded<A>>>,
-    /// Attributes of modules that the conditions read.
+    /// Module attributes that the conditions read.
     reads: &'static [ModuleRead],
     warnings: Vec<Diagnostic>,
 }
 
-/// The conditions of the guards as they are evaluated in a run.
+/// Conditions of guards during a run, which are evaluated in each turn.
 pub struct Watched<A: runtime::Alphabet> {
     loaded: Vec<Arc<Loaded<A>>>,
     /// For each condition, a plan that never leaves its first atom; empty before the first output.
@@ -30,15 +30,15 @@ pub struct Watched<A: runtime::Alphabet> {
     fired: Vec<bool>,
 }
 
-/// Reason why the condition of a guard cannot be used.
+/// Reason why a guard's condition cannot be used.
 #[derive(Debug)]
 pub enum GuardError {
-    /// The condition has errors, given as diagnostics with spans in the sources.
+    /// The condition has errors; contains diagnostics with spans in the sources.
     Faulty(Vec<Diagnostic>),
-    /// A guard may not have this condition, for example because it depends on more than the output: the line in the
-    /// safety file, and a sentence.
+    /// The condition is not permitted for a guard, for example because it depends on more than the output; contains the
+    /// line in the safety file, and a sentence.
     Unfit(usize, String),
-    /// The condition cannot be loaded, for this reason.
+    /// The condition cannot be loaded; contains the reason.
     Load(LoadError),
 }
 
@@ -55,12 +55,12 @@ impl<A: runtime::Alphabet> fmt::Debug for Watched<A> {
 }
 
 impl<A: runtime::Alphabet> Conditions<A> {
-    /// Compiles the conditions of guards in the safety file of this name and text, for the robot of `alphabet`, whose
-    /// files are among `sources`.
+    /// Compiles the conditions of guards in the safety file with this name and text, for the robot of `alphabet`. The
+    /// files of the alphabet have to be among `sources`.
     ///
     /// # Errors
     /// Fails if a condition has errors, depends on more than the output of one turn or cannot be loaded, or if the
-    /// guards read too many attributes of modules.
+    /// guards read too many module attributes.
     pub fn compile(
         (name, text): (&str, &str),
         guards: &[Guard],
@@ -82,7 +82,7 @@ impl<A: runtime::Alphabet> Conditions<A> {
                 format!("the guards read {} attributes of modules, and {PUBLISHED} is the most", reads.len());
             return Err(GuardError::Unfit(line, sentence));
         }
-        // A process reads one safety file.
+        // The leaked memory is small: a process reads only one safety file.
         Ok(Self { loaded, reads: Vec::from_iter(reads).leak(), warnings })
     }
 
@@ -92,13 +92,13 @@ impl<A: runtime::Alphabet> Conditions<A> {
         &self.warnings
     }
 
-    /// Returns the conditions for a run, before its first output.
+    /// Returns the conditions for a run that has no output yet.
     #[must_use]
     pub fn watch(&self) -> Watched<A> {
         Watched { loaded: self.loaded.clone(), machines: Vec::new(), fired: Vec::new() }
     }
 
-    /// Returns the attributes of modules that the conditions read.
+    /// Returns the module attributes that the conditions read.
     #[must_use]
     pub fn reads(&self) -> &'static [ModuleRead] {
         self.reads
@@ -118,8 +118,8 @@ impl<A: runtime::Alphabet> Watched<A> {
     }
 }
 
-/// Compiles a condition of the safety file `file`, as the interrupt of a plan that only stops the robot; returns it
-/// with its warnings.
+/// Compiles a condition in the safety file `file` as the interrupt of a plan that only stops the robot; returns the
+/// condition and its warnings.
 fn compiled<A: runtime::Alphabet>(
     file: SourceId,
     condition: &Condition,
@@ -150,10 +150,10 @@ fn compiled<A: runtime::Alphabet>(
     Ok((Arc::new(loaded), warnings))
 }
 
-/// Text that precedes a condition in the plan that is made for it.
+/// Text that precedes a condition in the plan that is generated for it.
 const BEFORE: &str = "{ Guard (";
 
-/// A condition, with the plan that is made for it and the safety file that contains it.
+/// A condition, with the plan that is generated for it and the safety file that contains it.
 struct Placed<'c> {
     file: SourceId,
     plan: SourceId,
@@ -162,8 +162,8 @@ struct Placed<'c> {
 }
 
 impl Placed<'_> {
-    /// Converts a diagnostic about the plan to one about the safety file. Returns `None` for a warning that is not
-    /// about the condition.
+    /// Converts a diagnostic about the generated plan to a diagnostic about the safety file. Returns `None` for a
+    /// warning that is not about the condition.
     fn moved(&self, mut diagnostic: Diagnostic) -> Option<Diagnostic> {
         let span = diagnostic.span()?;
         let end = BEFORE.len() + self.condition.text.len();
@@ -173,7 +173,7 @@ impl Placed<'_> {
             return None;
         }
         if start >= end {
-            // The file has no such bracket.
+            // The bracket exists only in the generated plan.
             diagnostic.message = diagnostic.message.replace("found `)`", "found the end of `when`");
         }
         let edits = diagnostic.help.iter_mut().filter_map(|help| help.edit.as_mut());
@@ -182,7 +182,7 @@ impl Placed<'_> {
         Some(diagnostic)
     }
 
-    /// Converts a span in the plan to the corresponding span in the safety file.
+    /// Converts a span in the generated plan to the corresponding span in the safety file.
     fn in_file(&self, span: Span) -> Span {
         let Condition { text, bytes, .. } = self.condition;
         let (source, Range { start, end }) = self.sources.range(span);
@@ -197,7 +197,7 @@ impl Placed<'_> {
     }
 }
 
-/// Returns the keyword of an operand that depends on more than the output; `None` for any other operand.
+/// Returns the keyword of an operand that depends on more than the output of one turn; `None` for any other operand.
 fn memory<I>(operand: &runtime::Condition<I>) -> Option<&'static str> {
     match operand {
         runtime::Condition::Null

@@ -1,5 +1,5 @@
-//! The envelope, which applies the safety rules to decide which input is sent to a robot. It reads no clock and no
-//! file, so that a repeated run has the same decisions.
+//! The envelope applies the safety rules and decides which input is sent to a robot. It reads no clock and no file, so
+//! its decisions are the same when a run is replayed.
 
 use std::time::Duration;
 
@@ -9,38 +9,37 @@ use mdle_runtime::{MetersPerSecond, Nanos, RadiansPerSecond, Twist};
 
 use super::{Fence, Measure, Rules, Then};
 
-/// Speed, in metres per second, below which a robot that a fence has slowed down counts as held: 1 cm/s.
+/// Speed, in metres per second, below which a robot that a fence has slowed down counts as stopped: 1 cm/s.
 const CREEP: f64 = 0.01;
-/// The number of turn rates that are tried at a fence, from the plan's turn rate to the robot's current turn
-/// rate.
+/// Number of turn rates that are tried at a fence, from the plan's turn rate to the robot's current turn rate.
 const RATES: u32 = 4;
 
-/// The safety rules between a plan and a robot, with their state in a run.
+/// Safety rules that are applied between a plan and a robot, with their state in a run.
 #[derive(Debug, Clone)]
 pub struct Envelope {
     rules: Rules,
     /// Period of a turn, in seconds.
     period: f64,
-    /// The input that was sent last.
+    /// Input that was sent last.
     last: Twist,
     /// Time of the last decision; `None` before the first decision.
     at: Option<Nanos>,
-    /// The number of consecutive late turns.
+    /// Number of consecutive late turns.
     late: u64,
-    /// The rules that have diverted the run to another plan, and have been off since then.
+    /// Rules that have diverted the run to another plan, and are off since then.
     spent: Vec<RuleId>,
-    /// Verdict of the last turn, and the rule that decided; `None` if no rule changed the input.
+    /// Verdict of the last turn, and the rule that caused it; `None` if no rule changed the input.
     verdict: Option<(Verdict, RuleId)>,
-    /// The quantity that the last turn limited; `None` if it limited none.
+    /// Quantity that was limited in the last turn; `None` if no quantity was limited.
     limited: Option<LimitedQuantity>,
-    /// Number of turns in which each rule has decided, in the order of `Envelope::ids`.
+    /// Number of turns in which each rule changed the input, in the order of `Envelope::ids`.
     counts: Vec<(RuleId, u64)>,
 }
 
 /// A safety rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RuleId {
-    /// The rule that every input consists of finite numbers.
+    /// The built-in rule that an input consists of finite numbers.
     Finite,
     /// The rule `output` of `[stale]`.
     Stale,
@@ -50,7 +49,7 @@ pub enum RuleId {
     Overrun,
     /// The rule `[contact]`.
     Contact,
-    /// The guard of this number, from 0.
+    /// The guard with this number, from 0.
     Guard(usize),
     /// The rule `speed` of `[limits]`.
     Speed,
@@ -58,12 +57,12 @@ pub enum RuleId {
     TurnRate,
     /// The rule `acceleration` of `[limits]`.
     Acceleration,
-    /// The fence of this number, from 0.
+    /// The fence with this number, from 0.
     Fence(usize),
 }
 
 impl Envelope {
-    /// Returns the envelope of these rules for a run with this period.
+    /// Returns an envelope with these rules for a run with this period.
     #[must_use]
     pub fn new(rules: Rules, period: Duration) -> Self {
         let mut envelope = Self {
@@ -81,8 +80,8 @@ impl Envelope {
         envelope
     }
 
-    /// Returns the input to send instead of `asked`, in the turn with output `y` at time `now`. For each guard,
-    /// `fired` is `true` if its condition is true for `y`.
+    /// Returns the input to send instead of `asked` in the turn with output `y` at time `now`. `fired` contains `true`
+    /// for each guard whose condition is true for `y`.
     pub fn filter<Y>(&mut self, asked: Twist, y: &Y, now: Nanos, fired: &[bool]) -> Twist
     where
         Y: Odometry + Bumpers + SonarRing + DiffDrive,
@@ -113,15 +112,16 @@ impl Envelope {
         sent
     }
 
-    /// Counts consecutive turns that begin late: more than one and a half periods after the turn before.
+    /// Counts consecutive late turns. A turn is late if it begins more than one and a half periods after the previous
+    /// one.
     fn observe(&mut self, now: Nanos) {
         let is_late = self.at.is_some_and(|at| now.since(at).seconds() > 1.5 * self.period);
         self.late = if is_late { self.late.saturating_add(1) } else { 0 };
         self.at = Some(now);
     }
 
-    /// Returns the strictest consequence that the rules other than limits and fences demand, with its rule; the first
-    /// one if several are equally strict. Returns `None` if no rule demands any.
+    /// Returns the strictest consequence of all rules except limits and fences, with the rule that demands it; the
+    /// first of several equally strict ones. Returns `None` if no rule demands a consequence.
     fn demand<Y>(&self, asked: Twist, y: &Y, now: Nanos, fired: &[bool]) -> Option<(Then, RuleId)>
     where
         Y: Bumpers + SonarRing,
@@ -141,7 +141,7 @@ impl Envelope {
         demands.reduce(|strictest, other| if other.0 > strictest.0 { other } else { strictest })
     }
 
-    /// Returns the input within limits and fences, with the verdict and the rule that changed the input last; `None` if
+    /// Returns the input within limits and fences, with the verdict and the last rule that changed the input; `None` if
     /// no rule changed it.
     fn within_limits<Y: Odometry + DiffDrive>(&mut self, asked: Twist, y: &Y) -> (Twist, Option<(Verdict, RuleId)>) {
         let limits = self.rules.limits;
@@ -155,7 +155,7 @@ impl Envelope {
             let id = RuleId::Fence(number);
             let (pose, turns) = (y.pose(), y.velocity().omega.0);
             input.turn(self.turn_rate_at(fence, input.omega, y), id);
-            // Until the wheels have followed, the robot turns as it did.
+            // Until the wheels have reached the new turn rate, the robot keeps its current turn rate.
             let fastest = |omega| fence.fastest(&pose, input.v, omega, self.period);
             input.drive_within(fastest(input.omega).min(fastest(turns)), id);
         }
@@ -168,9 +168,9 @@ impl Envelope {
         (Twist { v: MetersPerSecond(input.v), omega: RadiansPerSecond(input.omega) }, verdict)
     }
 
-    /// Returns a turn rate at which the robot can brake before a fence: the plan's turn rate, or a turn rate
-    /// between the plan's and the robot's. A robot that drives along a fence cannot first turn towards it and
-    /// then brake, and wheels that change the turn rate as fast as they can cannot brake.
+    /// Returns a turn rate at which the robot can brake before a fence: the plan's turn rate, or a turn rate between it
+    /// and the robot's current turn rate. A robot that drives along a fence cannot first turn towards the fence and
+    /// then brake, and wheels cannot brake while they change the turn rate as fast as possible.
     fn turn_rate_at<Y: Odometry + DiffDrive>(&self, fence: &Fence, asked: f64, y: &Y) -> f64 {
         let (sent, Twist { v, omega }) = (self.last.v.0, y.velocity());
         let rolls = if v.0.abs() > sent.abs() { v.0 } else { sent };
@@ -187,7 +187,7 @@ impl Envelope {
         rates.next().unwrap_or(omega.0)
     }
 
-    /// Returns the intervention of the last [`Envelope::filter`]; `None` if it changed nothing.
+    /// Returns the intervention of the last [`Envelope::filter`]; `None` if the input was not changed.
     #[must_use]
     pub fn intervention(&self) -> Option<Intervention<'_>> {
         let Self { verdict, limited, .. } = self;
@@ -200,18 +200,18 @@ impl Envelope {
         &self.rules
     }
 
-    /// Returns the rules for writing; a change applies from the next turn on. Guards and fences must keep their
-    /// numbers.
+    /// Returns the rules for writing; a change applies from the next turn on. The numbers of guards and fences must not
+    /// change.
     pub fn rules_mut(&mut self) -> &mut Rules {
         &mut self.rules
     }
 
-    /// Returns each rule with the number of turns in which it decided.
+    /// Returns each rule with the number of turns in which it changed the input.
     pub fn counts(&self) -> impl Iterator<Item = (RuleId, u64)> {
         self.counts.iter().copied()
     }
 
-    /// Returns the name of a rule, as reports show it.
+    /// Returns the name of a rule as shown in reports.
     #[must_use]
     pub fn name(&self, id: RuleId) -> &str {
         match id {
@@ -255,7 +255,7 @@ impl Envelope {
         self.rules.guards.get(number).map(|guard| guard.when.text.as_str())
     }
 
-    /// Returns the rules that can decide.
+    /// Returns the rules that can change an input.
     fn ids(&self) -> impl Iterator<Item = RuleId> + use<> {
         let Rules { fences, contact, stale, stale_module, overrun, guards, .. } = &self.rules;
         let own = [
@@ -273,7 +273,7 @@ impl Envelope {
     }
 }
 
-/// An input that is being limited, and the rule that changed it last.
+/// An input to which limits are applied, and the last rule that changed it.
 #[derive(Debug)]
 struct Limited {
     v: f64,
@@ -300,7 +300,7 @@ impl Limited {
     }
 }
 
-/// Returns the quantity `measure` of the input `asked`, which a plan demanded, and of the input within limits.
+/// Returns the quantity `measure` in the input `asked`, which the plan requested, and in the limited input.
 fn of_measure(measure: Measure, asked: Twist, input: &Limited) -> LimitedQuantity {
     let (asked, sent) = match measure {
         Measure::TurnRate => (asked.omega.0, input.omega),

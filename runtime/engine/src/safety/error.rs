@@ -1,4 +1,4 @@
-//! The reason why a text is not a valid safety file.
+//! Error in a safety file.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use std::fmt;
 pub struct RulesError {
     /// Line of the file, from 1.
     pub line: usize,
-    /// A sentence with what to write instead.
+    /// Sentence with what to write instead.
     pub message: String,
 }
 

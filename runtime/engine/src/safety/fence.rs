@@ -1,33 +1,33 @@
-//! A fence: a polygon that the centre of the robot must not leave. It limits only the speed.
+//! A fence: a polygon that the centre of the robot must not leave. A fence limits only the speed.
 //!
-//! The input of a turn acts for a period, and its effect is measured only after that period, so two periods at
-//! the new speed and the braking distance have to fit before the fence: `v·2T + v²/2a <= d`. A rule that
-//! stopped the robot at a fixed distance would release it as soon as it stands still, and then stop it again,
-//! turn by turn.
+//! The input of a turn acts for one period, and its effect is measured only after this period. Therefore, the distance
+//! driven in two periods at the new speed plus the braking distance must be less than the distance to the fence:
+//! `v·2T + v²/2a <= d`. A rule that stopped the robot at a fixed distance would release the robot when it has stopped,
+//! and then stop it again, turn by turn.
 
 use mdle_runtime::Pose;
 
 use super::plane::{Edge, Point, between, cross, cross_over, direction, dot, hit, nearest, reach};
 
-/// A polygon that the centre of the robot must not leave, in the axes of its odometry.
+/// A polygon that the centre of the robot must not leave, in odometry coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fence {
     /// Name of the fence in reports: `fence`, or `fence 2`.
     pub name: String,
-    /// Corners in order, as x and y in metres: at least three, around an area.
+    /// Corners in order, as x and y in metres: at least three, enclosing an area.
     pub corners: Vec<[f64; 2]>,
     /// Distance from the edges at which the robot has to stop, in metres; at least 0.
     pub margin: f64,
-    /// Deceleration that the robot is sure to reach when it brakes, in metres per second squared; above 0.
+    /// Guaranteed braking deceleration of the robot, in metres per second squared; above 0.
     pub deceleration: f64,
 }
 
 impl Fence {
-    /// Returns the maximum speed, in metres per second, of a robot at this pose that has the speed `v` and the turn
-    /// rate `omega`; `period` is in seconds. A negative `v` drives backwards.
+    /// Returns the maximum speed, in metres per second, of a robot at this pose with the speed `v` and the turn rate
+    /// `omega`; `period` is in seconds. If `v` is negative, the robot drives backwards.
     ///
-    /// The robot continues to turn while it brakes, so every direction that it can have until it stands still
-    /// counts.
+    /// The robot continues to turn while it brakes, so all directions that it can have until it stops are taken into
+    /// account.
     pub(super) fn fastest(&self, pose: &Pose, v: f64, omega: f64, period: f64) -> f64 {
         let here = [pose.x.0, pose.y.0];
         let backwards = if v < 0.0 { core::f64::consts::PI } else { 0.0 };
@@ -39,8 +39,8 @@ impl Fence {
         self.deceleration * (libm::sqrt(late * late + 2.0 * room / self.deceleration) - late)
     }
 
-    /// Returns the distance that a robot outside the fence may drive: through the fence, until it reaches the margin
-    /// where it would leave the fence again. Returns 0 if the robot does not approach the fence in all directions from
+    /// Returns the distance that a robot outside the fence may drive: into the fence, and up to the margin of the edge
+    /// at which it would leave the fence again. Returns 0 unless the robot approaches the fence in all directions from
     /// `heading` to `heading + turned`.
     fn way_in(&self, here: Point, heading: f64, turned: f64) -> f64 {
         let to_fence = self.edges().map(|edge| between(here, nearest(here, edge)));
@@ -57,8 +57,8 @@ impl Fence {
         if exit.is_finite() { (exit - self.margin).max(0.0) } else { 0.0 }
     }
 
-    /// Returns the distance after which the robot comes within the margin of an edge, in the directions from `heading`
-    /// to `heading + turned`.
+    /// Returns the distance that the robot may drive before it comes within the margin of an edge, in the directions
+    /// from `heading` to `heading + turned`.
     fn room(&self, here: Point, heading: f64, turned: f64) -> f64 {
         let (from, to) = if turned < 0.0 { (heading + turned, heading) } else { (heading, heading + turned) };
         let (first, last) = (direction(from), direction(to));
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_robot_that_turns_keeps_clear_on_its_side() {
-        // Along the upper edge, 10 cm from it.
+        // The robot drives along the upper edge, 10 cm from it.
         let fastest = |omega| hall().fastest(&at(0.0, 0.4, 0.0), 0.4, omega, 0.1);
         assert!(fastest(-0.5) > 1.2 && fastest(0.5) < 0.35, "away from the edge, and towards it");
         assert!(fastest(2.0) < 0.2 && fastest(2.0) > 0.1, "{}", fastest(2.0));
@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(hall().fastest(&at(2.1, 0.0, 100.0), 0.3, 0.0, 0.1), 0.0, "past the fence");
     }
 
-    /// A notch between two arms: a robot that leaves one arm must not drive on to the other.
+    /// In a notch between two arms of the fence, a robot that leaves one arm must not drive on to the other arm.
     #[test]
     fn a_notch_is_not_crossed() {
         let corners =
@@ -180,7 +180,8 @@ mod tests {
         }
     }
 
-    /// At an edge that the robot meets at an angle, the margin is the distance from the edge, not along its way.
+    /// At an edge that the robot approaches at an angle, the margin is measured perpendicular to the edge, not along
+    /// the robot's path.
     #[test]
     fn the_margin_is_kept_at_any_angle() {
         let corners = vec![[-1.0, -1.0], [3.0, -1.0], [3.0, -0.3], [-1.0, 0.5]];
@@ -197,7 +198,8 @@ mod tests {
             assert!(left > 0.1 - 1e-9, "{degrees}: {left}");
             assert!(omega != 0.0 || degrees < 0.0 || left < 0.1 + 1e-9, "{degrees}: {left}");
         }
-        // As near as the margin allows: towards the edge not at all, away from it as before.
+        // The robot is as close as the margin allows: it cannot drive towards the edge, but can still drive away from
+        // it.
         let near = at(0.0, 0.21, 0.0);
         assert_eq!(fence.fastest(&near, 0.5, 0.0, 0.1), 0.0);
         assert!(fence.fastest(&near, -0.5, 0.0, 0.1) > 0.5);
@@ -221,7 +223,7 @@ mod tests {
             fault(&[[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 0.0], [0.0, 1.0]], 0.0),
             "the edge after corner 1 crosses that after corner 3"
         );
-        // A concave fence is one.
+        // A concave fence is valid.
         assert_eq!(fault(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.5], [0.0, 2.0]], 0.0), "");
     }
 }

@@ -1,4 +1,4 @@
-//! The supervisor of a run under safety rules.
+//! The guardian, the supervisor of a run with safety rules.
 
 use std::time::Duration;
 
@@ -9,19 +9,19 @@ use mdle_runtime::{Alphabet, Nanos, Plan, Twist};
 
 use super::{Conditions, Envelope, Limits, Measure, Rules, Watched};
 
-/// An envelope with the conditions of its guards: the supervisor of one run.
+/// Supervisor of one run: an envelope with the conditions of its guards.
 #[derive(Debug)]
 pub struct Guardian<A: Alphabet> {
     envelope: Envelope,
     conditions: Watched<A>,
-    /// `true` once the start of the robot has been compared with the fences.
+    /// `true` once the robot's start pose has been compared with the fences.
     has_begun: bool,
     /// Warnings that have not been reported yet.
     warnings: Vec<String>,
 }
 
 impl<A: Alphabet> Guardian<A> {
-    /// Returns the guardian of a run with this period; `conditions` are those of the guards in `rules`.
+    /// Returns the guardian of a run with this period; `conditions` are the conditions of the guards in `rules`.
     #[must_use]
     pub fn new(rules: Rules, conditions: &Conditions<A>, period: Duration) -> Self {
         let (envelope, conditions) = (Envelope::new(rules, period), conditions.watch());
@@ -34,7 +34,7 @@ impl<A: Alphabet> Guardian<A> {
         &self.envelope
     }
 
-    /// Returns the envelope, so that its rules can be changed.
+    /// Returns the envelope for writing; its rules can be changed.
     pub fn envelope_mut(&mut self) -> &mut Envelope {
         &mut self.envelope
     }
@@ -46,7 +46,7 @@ impl<A: Alphabet> Guardian<A> {
         self.warnings.drain(..).for_each(|warning| say(&format!("warning: {warning}")));
     }
 
-    /// Returns the changes of the limits that differ from `recorded`, and updates `recorded`.
+    /// Returns a change for each limit that differs from `recorded`, and updates `recorded`.
     pub(crate) fn changes_since(&self, recorded: &mut Limits) -> Vec<Change> {
         let mut limits = self.envelope.rules().limits;
         let mut changes = Vec::new();
@@ -66,7 +66,7 @@ where
     A: Alphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    /// Returns the input that is sent to the robot instead of `asked`.
+    /// Returns the input to send to the robot instead of `asked`.
     pub fn filtered(&mut self, asked: Twist, y: &A::Output, t: Nanos) -> Twist {
         if !std::mem::replace(&mut self.has_begun, true) {
             self.warnings = self.envelope.rules().held_at_start(&y.pose());
