@@ -1,7 +1,7 @@
-//! The shell: a session of a person, or of a file of commands, with a run (paper, III-H; docs/src/shell.md).
+//! The shell: controls a run by commands from a user or a file (paper, III-H; docs/src/shell.md).
 //!
-//! A [`Session`] is the supervisor of the run: it serves requests at breaks, and can stop the clock. The front
-//! end, [`converse`], runs on a thread of its own.
+//! A [`Session`] is the supervisor of the run: it serves requests at turn breaks, and can pause the clock. The front
+//! end, [`converse`], runs on its own thread.
 
 mod clock;
 mod command;

@@ -1,8 +1,8 @@
-//! The tree of attributes and methods (paper, III-H), which people and programs may read, set and call while a
-//! plan runs.
+//! The tree of attributes and methods (paper, III-H), which users and programs can read, set and call while a plan
+//! runs.
 //!
-//! A front end, on a thread of its own, turns typed text into a [`Request`] to the [`Hub`]. Readings come from
-//! the snapshot of a break; changes wait in a queue until a break. The thread that drives the robot has the
+//! A front end runs on its own thread, and turns typed text into a [`Request`] to the [`Hub`]. Values are read from the
+//! snapshot of a turn break; changes wait in a queue until a turn break. The thread that drives the robot has the
 //! [`Desk`], and never waits for a front end.
 
 mod desk;

@@ -1,4 +1,4 @@
-//! Points, vectors and edges in the plane, with lengths in metres.
+//! Points, vectors and edges in the plane; lengths are in metres.
 
 /// A vector or a point in the plane.
 pub(super) type Point = [f64; 2];
@@ -25,9 +25,9 @@ pub(super) fn between([ax, ay]: Point, [bx, by]: Point) -> Point {
     [bx - ax, by - ay]
 }
 
-/// Returns the distance from `here` along `way`, a unit vector, to the first point that is no farther than `margin`
-/// from the edge; `None` if there is no such point. If `here` is within the margin, the distance is 0 for a way that
-/// leads towards the edge, and `None` for a way that leads away from it.
+/// Returns the distance from `here` in the direction `way`, a unit vector, to the first point that is at most `margin`
+/// from the edge; `None` if there is no such point. If `here` is within the margin, returns 0 if `way` leads towards
+/// the edge, and `None` if it leads away from it.
 pub(super) fn reach(here: Point, way: Point, edge: Edge, margin: f64) -> Option<f64> {
     let (from, to) = edge;
     let to_edge = between(here, nearest(here, edge));
@@ -48,8 +48,8 @@ pub(super) fn reach(here: Point, way: Point, edge: Edge, margin: f64) -> Option<
     sides.chain(ends).min_by(f64::total_cmp)
 }
 
-/// Returns the distance from `here` along `way`, a unit vector, to the edge; `None` if the edge is not in that
-/// direction.
+/// Returns the distance from `here` to the edge in the direction `way`, a unit vector; `None` if the edge is not in
+/// this direction.
 pub(super) fn hit(here: Point, way: Point, (from, to): Edge) -> Option<f64> {
     let (edge, begin) = (between(from, to), between(here, from));
     let across = cross(way, edge);
@@ -58,7 +58,7 @@ pub(super) fn hit(here: Point, way: Point, (from, to): Edge) -> Option<f64> {
     (across != 0.0 && along >= 0.0 && (0.0..=1.0).contains(&part)).then_some(along)
 }
 
-/// Returns the point of the edge that is nearest to `here`.
+/// Returns the point of the edge nearest to `here`.
 pub(super) fn nearest(here: Point, (from, to): Edge) -> Point {
     let edge = [to[0] - from[0], to[1] - from[1]];
     let length = edge[0] * edge[0] + edge[1] * edge[1];

@@ -8,13 +8,13 @@ use super::error::RulesError;
 use super::section::{Section, Value, kind, line};
 use super::{Condition, Fence, Guard, Limits, Measure, PlanEntry, Rules, Then};
 
-/// The tables of a safety file.
+/// Tables that a safety file may contain.
 const TABLES: [&str; 6] = ["limits", "fence", "contact", "stale", "overrun", "guards"];
 
 /// Reads the rules of a file.
 ///
 /// # Errors
-/// Fails if the text is not TOML, or has an invalid key, value or fence.
+/// Fails if the text is not TOML, or contains an invalid key, value or fence.
 pub fn read(text: &str) -> Result<Rules, RulesError> {
     let parsed = DeTable::parse(text).map_err(|error| RulesError {
         line: line(text, error.span().map_or(0, |span| span.start)),
@@ -154,7 +154,7 @@ impl<'t, 'i> Reading<'t, 'i> {
     }
 }
 
-/// Names of rules, which a guard may not have.
+/// Names of other rules, which a guard must not have.
 const RESERVED: [&str; 8] =
     ["stale", "stale_module", "overrun", "contact", "speed", "turn_rate", "acceleration", "fence"];
 

@@ -7,45 +7,46 @@ use mdle_runtime::{Nanos, Radians};
 
 use super::Fence;
 
-/// The rules of a safety file. Without rules, every input that consists of numbers passes.
+/// Rules of a safety file. Without rules, every input of finite numbers is sent unchanged.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Rules {
     /// Limits of inputs.
     pub limits: Limits,
     /// Areas that the robot must not leave.
     pub fences: Vec<Fence>,
-    /// Consequence of contact of a bumper; `None` without this rule.
+    /// Consequence of a bumper contact; `None` without this rule.
     pub contact: Option<Then>,
-    /// Age of the measurements in an output from which it is stale, and the consequence.
+    /// Maximum age of the measurements in an output, and the consequence if they are older (stale); `None` without this
+    /// rule.
     pub stale: Option<(Nanos, Then)>,
-    /// Maximum age of a module's value that the plan or a guard reads, and the consequence if it is older; `None`
-    /// without this rule.
+    /// Maximum age of a module's value that the plan or a guard reads, and the consequence if the value is older;
+    /// `None` without this rule.
     pub stale_module: Option<(Nanos, Then)>,
-    /// Number of consecutive late turns, and the consequence; `None` without this rule.
+    /// Number of consecutive late turns that has a consequence, and the consequence; `None` without this rule.
     pub overrun: Option<(u64, Then)>,
-    /// Guards, whose conditions are in the plan language, in the order of the file.
+    /// Guards in the order of the file; their conditions are written in the plan language.
     pub guards: Vec<Guard>,
-    /// Plans to which rules divert, each once.
+    /// Plans to which rules divert, without duplicates.
     pub plans: Vec<PlanEntry>,
 }
 
 /// A plan to which rules divert.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlanEntry {
-    /// File of the plan, as the safety file names it.
+    /// File of the plan, as written in the safety file.
     pub file: String,
     /// Line of the safety file that first names the plan, from 1.
     pub line: usize,
 }
 
-/// Limits of inputs. A limit that is absent is infinite.
+/// Limits of inputs; an absent limit is infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// The maximum speed, forwards and backwards, in metres per second; above 0.
+    /// Maximum speed, forwards and backwards, in metres per second; above 0.
     pub speed: f64,
-    /// The maximum turn rate in either direction, in radians per second; above 0.
+    /// Maximum turn rate in either direction, in radians per second; above 0.
     pub turn_rate: f64,
-    /// The maximum increase of the speed, in metres per second squared; above 0. Braking has no limit.
+    /// Maximum increase of the speed, in metres per second squared; above 0. Braking is not limited.
     pub acceleration: f64,
 }
 
@@ -60,38 +61,37 @@ impl Default for Limits {
 pub struct Guard {
     /// Name of the guard.
     pub name: String,
-    /// The condition on the output.
+    /// Condition on the output.
     pub when: Condition,
     /// Consequence while the condition is true.
     pub then: Then,
 }
 
-/// The text of a condition, and its place in the safety file.
+/// Text of a condition, and its place in the safety file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Condition {
-    /// The text, in the plan language.
+    /// Text in the plan language.
     pub text: String,
     /// Line of the text, from 1.
     pub line: usize,
-    /// Byte range of the text in the safety file; the range of the whole value if the file writes the text with
-    /// escapes.
+    /// Byte range of the text in the safety file; if the text is written with escapes, the range of the whole value.
     pub bytes: Range<usize>,
 }
 
-/// Consequence of a rule, the weakest first.
+/// Consequence of a rule, in order of strictness, the weakest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Then {
-    /// The robot gets no forward speed.
+    /// The robot gets no forward speed, and may drive backwards.
     HoldForward,
     /// The robot gets the null input.
     Hold,
-    /// Another plan takes over: its index in [`Rules::plans`]. The rule is off from then on.
+    /// Another plan takes over, given by its index in [`Rules::plans`]; the rule is off afterwards.
     Divert(usize),
     /// The plan is ended.
     End,
 }
 
-/// The quantities of the rules that can be changed by name while a plan runs.
+/// Quantities of the rules that can be changed by name while a plan runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
     /// Maximum speed: [`Limits::speed`].
@@ -116,7 +116,7 @@ impl Measure {
         }
     }
 
-    /// Returns the kind of the quantity, and the unit in which it is written.
+    /// Returns the kind of the quantity, and the unit in which users write it.
     #[must_use]
     pub fn quantity(self) -> (Quantity, &'static str) {
         match self {
@@ -144,7 +144,7 @@ impl Measure {
         }
     }
 
-    /// Returns the limit of this quantity.
+    /// Returns the limit of this quantity for writing.
     #[must_use]
     pub fn of(self, limits: &mut Limits) -> &mut f64 {
         match self {

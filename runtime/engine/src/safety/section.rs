@@ -1,4 +1,4 @@
-//! The tables of a safety file: their keys, each with its value and its line.
+//! The tables of a safety file: keys with their values and lines.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -12,16 +12,16 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::RulesError;
 
-/// A key as TOML represents it.
+/// A key in the representation of the TOML parser.
 pub(super) type Key<'i> = Spanned<Cow<'i, str>>;
-/// A value as TOML represents it.
+/// A value in the representation of the TOML parser.
 pub(super) type Value<'i> = Spanned<DeValue<'i>>;
 
 /// A table of a safety file.
 #[derive(Clone, Copy)]
 pub(super) struct Section<'t, 'i> {
     text: &'t str,
-    /// Name of the table, as in `[limits]`; empty for the file itself.
+    /// Name of the table, as in `[limits]`; empty for the whole file.
     pub(super) name: &'t str,
     table: &'t DeTable<'i>,
     /// Byte offset of the table in the file.
@@ -29,12 +29,12 @@ pub(super) struct Section<'t, 'i> {
 }
 
 impl<'t, 'i> Section<'t, 'i> {
-    /// Returns the table of the whole file.
+    /// Returns the section of the whole file.
     pub(super) fn of_file(text: &'t str, table: &'t DeTable<'i>) -> Self {
         Self { text, name: "", table, place: 0 }
     }
 
-    /// Returns the section itself, after checking that every key is one of `keys`.
+    /// Returns the section itself if every key is one of `keys`, and an error otherwise.
     pub(super) fn only(self, keys: &[&str]) -> Result<Self, RulesError> {
         for (key, _) in self.entries() {
             let name = key.get_ref();
@@ -49,7 +49,7 @@ impl<'t, 'i> Section<'t, 'i> {
         Ok(self)
     }
 
-    /// Returns the entries in the order of their lines.
+    /// Returns the entries sorted by line.
     pub(super) fn entries(self) -> impl Iterator<Item = (&'t Key<'i>, &'t Value<'i>)> {
         let mut entries: Vec<_> = self.table.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
@@ -61,7 +61,7 @@ impl<'t, 'i> Section<'t, 'i> {
         self.table.get(key)
     }
 
-    /// Returns the value of a required key; `example` is a value for the error message.
+    /// Returns the value of a required key; `example` is shown in the error message.
     pub(super) fn needed(self, key: &str, example: &str) -> Result<&'t Value<'i>, RulesError> {
         let missing = || RulesError {
             line: line(self.text, self.place),
@@ -80,7 +80,7 @@ impl<'t, 'i> Section<'t, 'i> {
         Ok(Section { name, table, place: value.span().start, ..self })
     }
 
-    /// Returns a value that must be text; `example` is a value for the error message.
+    /// Returns a value that must be text; `example` is shown in the error message.
     pub(super) fn text(self, key: &str, value: &'t Value<'i>, example: &str) -> Result<&'t str, RulesError> {
         let found = value.get_ref();
         let message = || format!("`{key}` has to be text, as in `{key} = {example}`; found: {}", kind(found));
@@ -110,7 +110,7 @@ impl<'t, 'i> Section<'t, 'i> {
             return Err(message(format!("a unit touches its number: write `{compact}`")));
         }
         let read = quantity.read(text, unit);
-        // A number alone has been refused.
+        // A number without a unit was refused above.
         let read = read.map_err(|refusal| message(refusal.replace(&format!(", or a number in {unit}"), "")))?;
         match read {
             read if read > 0.0 || may_be_none && read == 0.0 => Ok(read),
@@ -128,7 +128,7 @@ impl<'t, 'i> Section<'t, 'i> {
         time.ok_or_else(|| self.error(value, format!("`{key}` has to be a time from 1ns to 100 years")))
     }
 
-    /// Returns a whole number that is at least 1.
+    /// Returns an integer that is at least 1.
     pub(super) fn count(self, key: &str, value: &'t Value<'i>) -> Result<u64, RulesError> {
         let found = value.get_ref();
         let number = found.as_integer().and_then(|number| u64::from_str_radix(number.as_str(), number.radix()).ok());
@@ -140,13 +140,13 @@ impl<'t, 'i> Section<'t, 'i> {
         })
     }
 
-    /// Returns an error at a place of the file.
+    /// Returns an error at a place in the file.
     pub(super) fn error<T>(self, place: &Spanned<T>, message: String) -> RulesError {
         RulesError { line: line(self.text, place.span().start), message }
     }
 
-    /// Returns the line of a value, from 1, and the byte range of its text; the range of the whole value if it is
-    /// written with escapes.
+    /// Returns the line of a value, from 1, and the byte range of its text; if the text is written with escapes, the
+    /// range of the whole value.
     pub(super) fn place(self, span: &Range<usize>, text: &str) -> (usize, Range<usize>) {
         let start = self.text.get(span.clone()).and_then(|value| value.find(text)).map(|before| span.start + before);
         let bytes = start.map_or_else(|| span.clone(), |start| start..start + text.len());
@@ -171,7 +171,7 @@ pub(super) fn kind(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-/// Returns a number as written in the file, or the type of another value.
+/// Returns a number as it is written in the file; for any other value, returns its type.
 fn shown(value: &DeValue<'_>) -> String {
     match value {
         DeValue::Integer(number) => number.to_string(),

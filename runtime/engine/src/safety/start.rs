@@ -1,4 +1,4 @@
-//! Warnings about a robot that starts where a fence holds it.
+//! Warns about a robot that starts outside a fence or within its margin.
 
 use mdle_runtime::Pose;
 
@@ -6,7 +6,7 @@ use super::plane::{between, nearest};
 use super::{Fence, Rules};
 
 impl Rules {
-    /// Returns a sentence for each fence that holds a robot which starts at this pose by its odometry.
+    /// Returns a sentence for each fence that holds a robot at its start, given the start pose by odometry.
     #[must_use]
     pub fn held_at_start(&self, pose: &Pose) -> Vec<String> {
         self.fences.iter().filter_map(|fence| fence.held_at_start(pose)).collect()
@@ -14,11 +14,11 @@ impl Rules {
 }
 
 impl Fence {
-    /// Returns a sentence if the fence holds a robot that starts at this pose.
+    /// Returns a sentence if the fence holds a robot that starts at this pose; `None` otherwise.
     fn held_at_start(&self, pose: &Pose) -> Option<String> {
         let here @ [x, y] = [pose.x.0, pose.y.0];
         let Self { name, margin, .. } = self;
-        // Adding zero turns -0 into 0.
+        // Adding zero converts -0 to 0.
         let place = format!("x = {:.2} m, y = {:.2} m", x + 0.0, y + 0.0);
         if !self.contains(here) {
             return Some(format!(

@@ -1,8 +1,8 @@
-//! Tests of safety files: their rules, and their errors.
+//! Tests which rules a safety file contains, and which errors are reported.
 
 use super::*;
 
-/// A file with every rule.
+/// A safety file with every rule.
 const WHOLE: &str = r#"
 [limits]
 speed = "40cm/s"

@@ -1,4 +1,4 @@
-//! The clock of a session: pause, resume, single turns and the pace of stepped time.
+//! The clock of a session: pauses and resumes the run, makes single turns, and sets the pace of stepped time.
 
 use std::time::Duration;
 
@@ -8,24 +8,25 @@ use mdle_runtime::Nanos;
 
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
-/// Kind of the attributes of the tree that are in seconds.
+/// Kind of attributes in seconds.
 const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
 
 /// The clock of a session.
 #[derive(Debug)]
 pub(super) struct SessionClock {
     period: Duration,
-    /// The requested pace of stepped time; `None` in real time.
+    /// Requested pace of stepped time; `None` in real time.
     pace: Option<Pace>,
-    /// A requested pace that the run has not adopted yet; `None` if there is none.
+    /// Requested pace that the run has not adopted yet; `None` if there is none.
     pub(super) ordered: Option<Pace>,
     pub(super) is_paused: bool,
-    /// Number of turns of the run after which the clock is paused again, and the reply to send then; `None` if no
-    /// request for single turns waits.
+    /// Number of turns of the run at which the clock is paused again, and the reply to send then; `None` if no request
+    /// for single turns is pending.
     steps: Option<(u64, Reply)>,
-    /// Requests that wait for a time or for the end of the plan, with `true` if the clock is paused again then.
+    /// Requests that wait for a time or for the end of the plan: the time, `true` if the clock is paused then, and the
+    /// reply.
     waits: Vec<(Nanos, bool, Reply)>,
-    /// Number of turns and time of the last turn, as answers show them.
+    /// Number of turns and time of the last turn, as shown in answers.
     now: String,
 }
 
@@ -39,7 +40,7 @@ impl SessionClock {
         Self { period, pace, ordered: None, is_paused, steps: None, waits: Vec::new(), now: String::new() }
     }
 
-    /// Answers the requests whose turn or time has come.
+    /// Answers requests whose turn or time has come.
     pub(super) fn made<B: Pilot>(&mut self, moment: &Break<'_, B>) {
         let now = said(moment);
         if let Some((_, reply)) = self.steps.take_if(|(turns, _)| moment.turns >= *turns || moment.is_over) {
@@ -57,12 +58,12 @@ impl SessionClock {
         }
     }
 
-    /// Notes the last state of a run that ends before its plan.
+    /// Saves the last state of a run that ends before its plan.
     pub(super) fn at_end<B: Pilot>(&mut self, moment: &Break<'_, B>) {
         self.now = said(moment);
     }
 
-    /// Replies to the requests that still wait when the run has ended, by the reason and the exit status.
+    /// Answers the pending requests at the end of the run, with the reason for the end and the exit status.
     pub(super) fn ended(&mut self, why: &str, status: u8) {
         let steps = self.steps.take().map(|(_, reply)| reply);
         let waits = std::mem::take(&mut self.waits).into_iter().map(|(_, _, reply)| reply);
@@ -128,7 +129,7 @@ impl SessionClock {
 /// Answer to a request to change the clock in real time.
 const REAL: &str = "the time of a real robot goes on by itself";
 
-/// Returns the time of a break and the number of turns, as the text of an answer.
+/// Returns the number of turns and the time at a turn break, as shown in answers.
 fn said<B: Pilot>(moment: &Break<'_, B>) -> String {
     let (turns, t) = (moment.turns, Value::Quantity(moment.t.seconds(), "s"));
     let word = if turns == 1 { "turn" } else { "turns" };

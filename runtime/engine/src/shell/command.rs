@@ -1,4 +1,4 @@
-//! The commands of the shell, each of which becomes a request.
+//! Parses the commands of the shell, which become requests.
 
 use crate::tree::{Change, Operation};
 
@@ -7,23 +7,23 @@ use crate::tree::{Change, Operation};
 pub(super) enum Command {
     /// An empty line or a comment.
     Nothing,
-    /// Make a request for the node or the folder of this path.
+    /// Perform an operation on the node or folder with this path.
     Ask(String, Operation),
-    /// Change the folder at which relative paths begin.
+    /// Change the current folder, at which relative paths begin.
     Enter(String),
-    /// Print the folder at which relative paths begin.
+    /// Print the current folder.
     Here,
-    /// Print the commands, or the description of a node.
+    /// Print all commands, or the description of a node.
     Help(Option<String>),
-    /// Print a command, with its arguments and its description.
+    /// Print a command with its arguments and its description.
     Explain((&'static str, &'static str, &'static str)),
-    /// Let the stored plan of this name take over at the moment that these arguments name.
+    /// Let the stored plan with this name take over at the moment that the arguments name.
     Swap(String, Vec<String>),
-    /// End the session, as after the last command.
+    /// End the session, as at the end of the commands.
     Quit,
 }
 
-/// The commands, with their arguments and their descriptions.
+/// All commands, with their arguments and descriptions.
 pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("ls", "[PATH]", "list a folder"),
     ("cd", "[PATH]", "change the folder"),
@@ -46,10 +46,10 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
     ("quit", "", "stop the robot, and end the session"),
 ];
 
-/// Reads a line, typed in the folder `here`.
+/// Parses a line that was typed in the folder `here`.
 ///
 /// # Errors
-/// Fails with a sentence that says what to type instead.
+/// Fails with a sentence that explains what to type instead.
 pub(super) fn command(line: &str, here: &str) -> Result<Command, String> {
     let line = line.trim();
     if line.is_empty() || line.starts_with('#') {
@@ -95,7 +95,7 @@ pub(super) fn command(line: &str, here: &str) -> Result<Command, String> {
     }
 }
 
-/// Returns the absolute path for a path that was typed in the folder `here`.
+/// Converts a path that was typed in the folder `here` to an absolute path.
 fn path(typed: &str, here: &str) -> String {
     let from = if typed.starts_with('/') { "" } else { here };
     let mut parts: Vec<&str> = Vec::new();

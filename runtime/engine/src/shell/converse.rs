@@ -1,4 +1,4 @@
-//! The front end of the shell: reads commands, asks the hub, and prints the answers.
+//! The front end of the shell: reads commands, sends requests to the hub, and prints the answers.
 
 use std::io::Write;
 use std::time::Duration;
@@ -9,13 +9,13 @@ use super::command::{COMMANDS, Command, command};
 use super::{Lines, Typed};
 use crate::tree::{Access, Answer, Change, Hub, Kind, Node, Operation, Request, Role};
 
-/// Maximum wait of a person at a terminal for the answer of a module that is being made.
+/// Maximum time for which a user at a terminal waits for a module that is being created.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// Settings of a session's conversation.
 #[derive(Debug, Clone)]
 pub struct Conversation {
-    /// Name of the file of commands, for messages about its lines; `None` at a terminal.
+    /// Name of the command file, for messages about its lines; `None` at a terminal.
     pub file: Option<String>,
     /// Role of the user.
     pub role: Role,
@@ -25,9 +25,8 @@ pub struct Conversation {
     pub echoes: bool,
 }
 
-/// Carries out commands until there are no more, the session ends, or an error ends it; the run is then ended
-/// as well. Returns `true` if every command was carried out. If the run never begins, its reason has been
-/// reported elsewhere.
+/// Carries out commands until there are no more, the session ends, or an error ends it; then also ends the run. Returns
+/// `true` if every command was carried out, or if the run never begins; the reason for this is reported elsewhere.
 pub fn converse(
     hub: &Hub,
     conversation: &Conversation,
@@ -59,7 +58,7 @@ pub fn converse(
             Err(sentence) => Answer::Refused(sentence),
         };
         asker.report();
-        // At a terminal nobody reads on; a file goes on, as `get` is answered after the run.
+        // At a terminal, no further command is read; a file continues, because `get` is also answered after the run.
         let is_last = answer == Answer::Ended && conversation.file.is_none();
         let sentence = match answer {
             Answer::Entries(entries) => Ok(entries.join("\n")),
@@ -82,13 +81,13 @@ pub fn converse(
             break;
         }
     }
-    // The run is the session's, whatever its role.
+    // The end of the session ends the run, even if the user's role may not.
     let quit = Operation::Change(Change::Call(Vec::new()));
     let _ = hub.ask(Request { path: "/engine/quit".to_owned(), operation: quit, role: Role::Admin });
     is_well
 }
 
-/// The side of a conversation that makes requests.
+/// The part of a conversation that makes requests.
 struct Asker<'a> {
     hub: &'a Hub,
     conversation: &'a Conversation,
@@ -99,14 +98,14 @@ impl Asker<'_> {
     /// Makes a request to the hub, and prints reports while it waits for the answer.
     fn ask(&mut self, path: &str, operation: Operation) -> Answer {
         let request = Request { path: path.to_owned(), operation, role: self.conversation.role };
-        // A module that is being made may take long: a person at a terminal types on.
+        // Creating a module may take long: a user at a terminal can type the next command in the meantime.
         let is_made = path.starts_with("/lib/") && self.conversation.file.is_none();
         let patience = if is_made { PATIENCE } else { Duration::MAX };
         self.hub.wait(request, patience, &mut || self.report())
     }
 
-    /// Prints the reports of watched attributes. At a terminal, another thread does this, also while a line is
-    /// being typed.
+    /// Prints reports of watched attributes. At a terminal, another thread prints them, even while a line is being
+    /// typed.
     fn report(&mut self) {
         if self.conversation.file.is_some() {
             while let Some(report) = self.hub.report(Duration::ZERO) {
@@ -116,7 +115,7 @@ impl Asker<'_> {
         }
     }
 
-    /// Returns the sentence about a plan that is not stored.
+    /// Returns the error message about a plan that is not stored.
     fn no_plan(&mut self, name: &str) -> String {
         let stored = match self.ask("/plans", Operation::List) {
             Answer::Entries(names) => names,
@@ -164,12 +163,12 @@ impl Asker<'_> {
     }
 }
 
-/// Returns a line about a command.
+/// Returns a line that describes a command.
 fn summary((name, arguments, does): (&str, &str, &str)) -> String {
     format!("{:28} {does}", format!("{name} {arguments}"))
 }
 
-/// Returns a line about a node.
+/// Returns a line that describes a node.
 fn described(path: &str, node: &Node) -> String {
     let kind = match node.kind {
         Kind::Flag => "true or false".to_owned(),

@@ -13,21 +13,21 @@ use crate::tree::Hub;
 
 /// Maximum length of a line, in bytes.
 const LONGEST: u64 = 1 << 16;
-/// Sentence about a line with bytes that are no text.
+/// Error message about a line that is not UTF-8.
 const NO_TEXT: &str = "the line is not UTF-8 text";
 
 /// Lines of commands.
 pub trait Lines {
-    /// Returns the next line, which is typed in the folder `here`.
+    /// Returns the next line; a terminal shows the current folder `here`.
     fn next(&mut self, here: &str) -> Typed;
 }
 
 /// A line, or the reason why there is none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Typed {
-    /// A line, and its number from 1.
+    /// A line with its number, from 1.
     Line(usize, String),
-    /// Number of a line that is not usable, and a sentence with the reason.
+    /// A line that cannot be used: its number, and a sentence with the reason.
     Unusable(usize, String),
     /// There are no more lines.
     End,
@@ -41,7 +41,7 @@ pub struct Input<R> {
 }
 
 impl<R: BufRead> Input<R> {
-    /// Returns the lines of a text.
+    /// Returns the lines of a reader.
     pub fn new(from: R) -> Self {
         Self { from, number: 0 }
     }
@@ -99,15 +99,15 @@ impl<R: BufRead> Lines for Input<R> {
 /// Function that prints whole lines above the line that is being typed.
 pub type PrintAbove = dyn FnMut(&str) -> io::Result<()> + Send;
 
-/// Lines of a person at a terminal, with completion of paths. Ctrl-C and Ctrl-D end them.
+/// Lines that a user types at a terminal, with completion of paths. Ctrl-C and Ctrl-D end them.
 pub struct Terminal {
     editor: Editor<Completion, rustyline::history::MemHistory>,
     number: usize,
 }
 
 impl Terminal {
-    /// Returns the lines that are typed at this process's terminal, and a function that prints above the line
-    /// that is being typed.
+    /// Returns the lines that are typed at the terminal of this process, and a function that prints above the line that
+    /// is being typed.
     ///
     /// # Errors
     /// Fails if the terminal cannot be used.
@@ -133,7 +133,7 @@ impl Lines for Terminal {
                 let _ = self.editor.add_history_entry(line.as_str());
                 Typed::Line(self.number, line)
             }
-            // The bytes that were typed so far are lost, and those that follow begin the next line.
+            // The bytes typed so far are lost, and the next bytes begin a new line.
             Err(ReadlineError::Io(error)) if error.kind() == io::ErrorKind::InvalidData => {
                 Typed::Unusable(self.number, NO_TEXT.to_owned())
             }

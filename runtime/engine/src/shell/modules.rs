@@ -1,5 +1,5 @@
-//! The modules in the tree: `/usr/NAME` for each loaded module, `/lib/NAME` for each module that can be loaded
-//! (paper, III-H).
+//! Modules in the tree: `/usr/NAME` for each loaded module, and `/lib/NAME` for each module that can be loaded (paper,
+//! III-H).
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use crate::module::{About, PLAN, Refusal};
 use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
-/// The methods and readings that every module has, in the order of their values.
+/// Methods and readings that every module has, in the order of their values.
 const OWN: [(&str, Node); 8] = [
     (
         ".state",
@@ -32,22 +32,22 @@ const OWN: [(&str, Node); 8] = [
     (".unload", Node::method(Role::Admin, "unloads the module; its attributes vanish")),
 ];
 
-/// Name of the node in `/lib` that loads child processes; a module of the library with this name has priority.
+/// Name of the node in `/lib` that loads child processes. A module of the library with this name takes precedence.
 const PROCESS: &str = "process";
 
-/// The modules, with the unanswered requests to load modules.
+/// Modules, with the requests to load modules that are not answered yet.
 #[derive(Debug, Default)]
 pub(super) struct ModulesPart {
     waiting: Vec<(u32, Reply)>,
 }
 
 impl ModulesPart {
-    /// Returns `true` if a request has not been answered.
+    /// Returns `true` if a request is not answered yet.
     pub(super) fn waits(&self) -> bool {
         !self.waiting.is_empty()
     }
 
-    /// Answers the request of this number to load a module.
+    /// Answers the request with this number to load a module.
     pub(super) fn answer(&mut self, number: u32, result: Result<(), Refusal>) {
         let Some(place) = self.waiting.iter().position(|(waiting, _)| *waiting == number) else { return };
         let (_, reply) = self.waiting.remove(place);
@@ -144,7 +144,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
     }
 }
 
-/// Begins to load the child process that the arguments name; returns the number of the request.
+/// Starts to load the child process that the arguments describe; returns the number of the request.
 fn load_process<A: EngineAlphabet>(engine: &mut Engine<A>, arguments: &[String]) -> Result<u32, String> {
     match arguments {
         [name, command @ ..] if !command.is_empty() => engine.load_process(name, &command.join(" ")),
@@ -154,7 +154,7 @@ fn load_process<A: EngineAlphabet>(engine: &mut Engine<A>, arguments: &[String])
     }
 }
 
-/// Returns the answer to a request to stop or to start the module `name`.
+/// Returns the answer to a request to stop or start the module `name`.
 fn held(name: &str, is_stop: bool, effect: HoldEffect) -> String {
     match effect {
         HoldEffect::None if is_stop => format!("{name} is stopped already"),
@@ -188,7 +188,7 @@ fn state_text(state: ModuleState) -> &'static str {
     }
 }
 
-/// Returns the kind of an attribute in the tree; a quantity has the unit of its description.
+/// Returns the kind of an attribute in the tree; a quantity has the unit that the attribute's description names.
 fn kind(about: &About) -> Kind {
     let quantity = about.unit.and_then(|unit| Some((Quantity::of_unit(unit.name)?.0, unit.name)));
     match (about.kind, quantity) {
@@ -236,7 +236,7 @@ fn shown(about: &About, value: &attribute::Value) -> Value {
     }
 }
 
-/// Converts a value that a user has typed to the value of an attribute.
+/// Converts a value that a user has typed to an attribute's value.
 fn taken(about: &About, value: Value) -> Result<attribute::Value, String> {
     use attribute::Value as Of;
     let si = match value {

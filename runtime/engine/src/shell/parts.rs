@@ -1,4 +1,4 @@
-//! The parts of the tree that belong to no plan and no module: the robot, the safety rules and the engine.
+//! Parts of the tree that belong to no plan or module: the robot, the safety rules and the engine.
 
 use mdle_host::{Break, Pilot};
 use mdle_quantity::Quantity;
@@ -8,18 +8,18 @@ use mdle_runtime::{Alphabet, Plan, SonarId, Twist};
 use crate::safety::{Guardian, Limits, Measure};
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
-/// `/usr/robot`: the robot's latest output, and the next input.
+/// `/usr/robot`: the robot's latest output and next input.
 #[derive(Debug)]
 pub(super) struct RobotPart;
 
-/// `/safety`: the rules, if there are any; without rules the limits have no values.
+/// `/safety`: the safety rules. In a run without rules, the limits have no values.
 #[derive(Debug)]
 pub(super) struct SafetyPart<A: Alphabet>(pub(super) Option<Guardian<A>>);
 
-/// `/engine`, the part for the engine itself.
+/// `/engine`: the engine itself.
 #[derive(Debug, Default)]
 pub(super) struct EnginePart {
-    /// `true` once the session is to end.
+    /// `true` once the session has to end.
     pub(super) quits: bool,
 }
 

@@ -1,5 +1,5 @@
-//! The plans in the tree: `/usr/mdle`, the module that makes their turns, and `/plans`, the stored plans
-//! (paper, III-D and Fig. 7).
+//! Plans in the tree: `/usr/mdle`, the module that makes the turns of plans, and `/plans`, the stored plans (paper,
+//! III-D and Fig. 7).
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -13,11 +13,11 @@ use crate::attribute::AttributeName;
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
-/// Answer to a request whose plan was armed, but was replaced before it took over.
+/// Answer to a request whose plan was armed, but replaced before it took over.
 const TAKEN: &str = "another plan takes its place";
 const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
 
-/// The attributes of `/usr/mdle`, in the order of [`Served::values`].
+/// Attributes of `/usr/mdle`, in the order of [`Served::values`].
 const OWN: [(&str, Node); 13] = [
     (
         "main",
@@ -37,11 +37,11 @@ const OWN: [(&str, Node); 13] = [
     ("rollback", Node::method(Role::Swap, "ends the plan on trial, and lets the plan before it go on")),
 ];
 
-/// The plans, with the unanswered requests about them.
+/// Plans, with the requests about them that are not answered yet.
 #[derive(Debug, Default)]
 pub(super) struct PlansPart {
     waiting: Vec<Waiting>,
-    /// Number of the request, and name, of each plan of this session that is armed.
+    /// Armed plans of this session, each with the number of its request and its name.
     armed: Vec<(u32, String)>,
 }
 
@@ -56,13 +56,13 @@ struct Waiting {
 }
 
 impl PlansPart {
-    /// Returns `true` if a request has not been answered.
+    /// Returns `true` if a request is not answered yet.
     pub(super) fn waits(&self) -> bool {
         !self.waiting.is_empty()
     }
 
-    /// Answers the requests that the engine has decided. Returns messages about plans whose requests were
-    /// answered before.
+    /// Answers the requests that the engine has decided. Returns messages about plans whose requests were answered
+    /// earlier.
     pub(super) fn answer<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>) -> Vec<String> {
         let mut messages = Vec::new();
         let mut replaced = Vec::new();
@@ -105,19 +105,20 @@ impl PlansPart {
                 PlanEvent::Accepted(_) | PlanEvent::RolledBack { .. } => {}
             }
         }
-        // The request of the other plan was answered before, while the plan's turn was late.
+        // The request for the replaced plan was already answered, while the plan's turn was late.
         let own = replaced.into_iter().filter(|(is_own, _)| *is_own);
         messages.extend(own.map(|(_, name)| format!("warning: {name} does not take over: {TAKEN}")));
         messages
     }
 
-    /// Removes the plan of this request from the armed plans and returns its name; `None` if it is not among them.
+    /// Removes the plan for this request from the armed plans, and returns its name; `None` if the plan is not among
+    /// them.
     fn disarmed(&mut self, ticket: u32) -> Option<String> {
         let place = self.armed.iter().position(|(armed, _)| *armed == ticket)?;
         Some(self.armed.swap_remove(place).1)
     }
 
-    /// Answers the request of this number, unless it has been answered.
+    /// Answers the request with this number, unless it was answered already.
     fn settle(&mut self, ticket: u32, result: Result<String, String>) {
         let Some(place) = self.waiting.iter().position(|waiting| waiting.ticket == ticket) else { return };
         let Waiting { warnings, reply, .. } = self.waiting.remove(place);
@@ -178,7 +179,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
         };
         match result {
             Ok(Some(ticket)) => self.waiting.push(Waiting { ticket, warnings: String::new(), reply }),
-            // The name of the plan that drives is known once the request is carried out.
+            // The name of the plan that continues is known only after the rollback.
             Ok(None) if path == "/usr/mdle/rollback" => {
                 reply.answer(Answer::Done(format!("{} goes on", moment.pilot.plans().name())));
             }
@@ -192,7 +193,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
     }
 }
 
-/// Sets an attribute; returns the number of the request if the compiler answers it.
+/// Sets an attribute; returns the number of the request if the compiler has to answer it.
 fn set<A: EngineAlphabet>(path: &str, text: &str, plans: &mut Plans<A>) -> Result<Option<u32>, String> {
     match path {
         "/usr/mdle/main" if text.starts_with('{') => Ok(Some(plans.swap(PlanSource::Text(text.to_owned()), When::Now))),
@@ -201,7 +202,7 @@ fn set<A: EngineAlphabet>(path: &str, text: &str, plans: &mut Plans<A>) -> Resul
     }
 }
 
-/// Calls a method; returns the number of the request if the compiler answers it.
+/// Calls a method; returns the number of the request if the compiler has to answer it.
 fn call<A: EngineAlphabet>(path: &str, arguments: &[String], engine: &mut Engine<A>) -> Result<Option<u32>, String> {
     if path == "/usr/mdle/load_plan" {
         let source = match arguments {
@@ -228,7 +229,7 @@ fn call<A: EngineAlphabet>(path: &str, arguments: &[String], engine: &mut Engine
     Ok(None)
 }
 
-/// Returns the moment that arguments name: the next turn if there are no arguments.
+/// Returns the moment that the arguments name; without arguments, the next turn.
 pub(super) fn when(arguments: &[String]) -> Result<When, String> {
     let words = || When::ALL.map(|(word, _)| word).join(", ");
     match arguments {
@@ -251,7 +252,7 @@ fn set_trial<A: EngineAlphabet>(plans: &mut Plans<A>, text: &str) -> Result<(), 
     Ok(())
 }
 
-/// Returns the values that describe the position in a plan; `t` is the time since the plan began.
+/// Returns the values that describe the current position in a plan; `t` is the time since the plan began.
 fn standing(place: &PlanPosition<'_>, t: Nanos) -> [Value; 6] {
     let conditions: Vec<_> = place.scopes.iter().map(|scope| scope.condition).collect();
     [

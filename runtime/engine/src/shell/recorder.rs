@@ -1,7 +1,7 @@
-//! `/recorder`, which writes all further turns to a record until it is stopped (docs/src/shell.md).
+//! `/recorder`: writes turns to a record, from its start until it is stopped (docs/src/shell.md).
 //!
-//! A thread of its own opens and writes the file, so that no turn of a real robot waits for it; turns for which
-//! the queue has no room are left out and counted.
+//! A separate thread opens and writes the file, so a turn of a real robot never waits for the file. Turns that do not
+//! fit into the queue are omitted from the record, and counted.
 
 use std::any::Any;
 use std::fs::File;
@@ -22,25 +22,25 @@ use crate::engine::Engine;
 use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value};
 
-/// Maximum number of turns that wait to be written.
+/// Maximum number of turns in the queue to the writing thread.
 const WAITING: usize = 256;
-/// Maximum wait for the file to be written at the end of the session.
+/// Maximum wait, at the end of the session, for the file to be complete.
 const AT_THE_END: Duration = Duration::from_secs(2);
 
 /// The recorder of a session.
 #[derive(Debug)]
 pub(super) struct RecorderPart {
-    /// Channel for orders; `None` if the system could not create the thread.
+    /// Channel for orders; `None` if the system could not create the writing thread.
     orders: Option<SyncSender<Order>>,
     thread: Option<JoinHandle<()>>,
     opened: Receiver<Result<(), String>>,
     progress: Arc<Progress>,
     begin: Begin,
-    /// `true` if the run waits while there is no room for a turn.
+    /// `true` if the run waits when the queue is full.
     is_stepped: bool,
-    /// Reply to send when the file is open; `None` if no file is being opened.
+    /// Reply to send when the file has been opened; `None` if no file is being opened.
     opening: Option<Reply>,
-    /// Name of the file that is being written, or was written last.
+    /// Name of the file that is being written, or that was written last.
     file: Arc<str>,
     tape: Option<Tape>,
     turns: u64,
@@ -54,11 +54,11 @@ struct Tape {
     has_begun: bool,
 }
 
-/// Progress of the thread that writes the record.
+/// Progress of the thread that writes a record.
 #[derive(Debug, Default)]
 struct Progress {
     bytes: AtomicU64,
-    /// Reason why writing the record has failed, and the number of turns in the file; `None` if it has not failed.
+    /// Reason why writing has failed, and the number of turns in the file; `None` if writing has not failed.
     fault: Mutex<Option<(String, u64)>>,
 }
 
@@ -71,8 +71,8 @@ enum Order {
 }
 
 impl RecorderPart {
-    /// Returns the recorder of a run with these terms on this target. It must be created before the thread of the turns
-    /// is scheduled in real time, because the recorder's thread would inherit this scheduling.
+    /// Returns the recorder of a run with these terms on this target. It must be created before the control thread gets
+    /// real-time scheduling, because the recorder's thread would inherit it.
     pub(super) fn new(terms: &RunTerms, target: &str) -> Self {
         let ((orders, waiting), (sender, opened)) = (sync_channel(WAITING), channel());
         let progress = Arc::<Progress>::default();
@@ -101,7 +101,7 @@ impl RecorderPart {
         }
     }
 
-    /// Passes the turn that was made to the thread that writes the record, if there is a record.
+    /// Passes the turn that was made to the writing thread, if a record is being written.
     pub(super) fn made<A>(&mut self, moment: &Break<'_, Engine<A>>)
     where
         A: EngineAlphabet<Input = Twist>,
@@ -124,9 +124,9 @@ impl RecorderPart {
             changes: &[],
             overruled: None,
         };
-        // The compass follows from all outputs since the start of the run, which this record does not have.
+        // The compass is computed from all outputs since the start of the run, which this record does not contain.
         let y = &Sensed { compass: Compass::default(), ..*y };
-        // A turn is encoded by what has changed since the last one that was written.
+        // A turn is encoded as the difference from the last turn that was written.
         let (mut frames, mut bytes) = (tape.frames.clone(), Vec::new());
         if !tape.has_begun {
             self.begin.plan = moment.pilot.plans().name().to_owned();
@@ -143,7 +143,7 @@ impl RecorderPart {
         }
     }
 
-    /// Answers the request that waits for the file to be opened; returns a message if writing the record has failed.
+    /// Answers the request that waits for the file to be opened; returns a message if writing has failed.
     pub(super) fn proceed(&mut self) -> Option<String> {
         if let Ok(opened) = self.opened.try_recv()
             && let Some(reply) = self.opening.take()
@@ -163,7 +163,7 @@ impl RecorderPart {
         Some(format!("warning: the record {file} ends here, with {turns} {word}, as it cannot be written: {fault}"))
     }
 
-    /// Begins to open a file.
+    /// Starts to open a file.
     fn start(&mut self, arguments: &[String], reply: Reply) {
         let sentence = match (arguments, &self.orders) {
             (_, None) => "the system gives no thread for the recorder".to_owned(),
@@ -192,7 +192,7 @@ impl RecorderPart {
         };
         let mut end = Vec::new();
         tape.frames.end(&mut end);
-        // Without room the file has no end, as after a kill.
+        // If the queue is full, the file has no end mark, as after the process was killed.
         let _ = orders.try_send(Order::Write(end)).and_then(|()| orders.try_send(Order::Close));
         Answer::Done(format!("{} turns in {}", self.turns, self.file))
     }
@@ -209,7 +209,7 @@ impl Drop for RecorderPart {
     }
 }
 
-/// Carries out orders until there are no more.
+/// Carries out orders until the channel is closed.
 fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), String>>, progress: &Arc<Progress>) {
     let mut record: Option<RecordFile<CountingFile>> = None;
     for order in orders {
@@ -234,7 +234,7 @@ fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), String>>, prog
     }
 }
 
-/// Creates the file of a record; fails if a file of this name exists.
+/// Creates the file of a record; fails if the file already exists.
 fn created(path: &Path) -> Result<File, String> {
     File::create_new(path).map_err(|error| {
         if error.kind() == io::ErrorKind::AlreadyExists {

@@ -1,4 +1,4 @@
-//! The supervisor of a run with a shell.
+//! The session: the supervisor of a run with a shell.
 
 use std::time::Duration;
 
@@ -18,20 +18,20 @@ use crate::plans::EngineAlphabet;
 use crate::safety::{Guardian, Limits};
 use crate::tree::{Desk, Served};
 
-/// Maximum wait for a request while the clock is paused, between two checks whether the run is to stop.
+/// Interval at which a paused run checks whether it has to stop.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// The supervisor of a run with a shell: it serves requests at breaks, and applies the safety rules, if there are any.
+/// Supervisor of a run with a shell: serves requests at turn breaks, and applies the safety rules, if there are any.
 #[derive(Debug)]
 pub struct Session<A: Alphabet> {
     desk: Desk,
     parts: Parts<A>,
     request: StopRequest,
-    /// The limits of the safety rules as last recorded; `None` if the run has no record or no rules.
+    /// Limits of the safety rules as last recorded; `None` if the run has no record or no rules.
     recorded: Option<Limits>,
 }
 
-/// The parts of the tree.
+/// All parts of the tree.
 #[derive(Debug)]
 struct Parts<A: Alphabet> {
     robot: RobotPart,
@@ -47,8 +47,8 @@ struct Parts<A: Alphabet> {
 }
 
 impl<A: Alphabet> Session<A> {
-    /// Returns a session for a run with these terms. If `is_paused` is `true`, the run begins paused; this has no
-    /// effect in real time.
+    /// Returns a session for a run with these terms. If `is_paused` is `true`, the run begins paused; in real time,
+    /// this has no effect.
     #[must_use]
     pub fn new(desk: Desk, guardian: Option<Guardian<A>>, terms: &RunTerms, is_paused: bool) -> Self {
         let parts = Parts {
@@ -134,7 +134,7 @@ where
     A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    /// Serves requests; waits at most `wait` for a request, or not at all if it is `None`.
+    /// Serves requests. Waits at most `wait` for a request; `None` means that it does not wait.
     fn serve(&mut self, moment: &mut Break<'_, Engine<A>>, wait: Option<Duration>) {
         let Self { desk, parts, .. } = self;
         let has_changed = match wait {
@@ -160,7 +160,7 @@ where
         [robot, plans, modules, clock, engine, safety, recorder, link]
     }
 
-    /// Continues requests that take longer than a break, and answers those that are decided.
+    /// Continues requests that take longer than a turn break, and answers requests that are decided.
     fn proceed(&mut self, pilot: &mut Engine<A>, has_changed: bool) {
         if has_changed || self.plans.waits() || self.modules.waits() {
             let loaded = pilot.progress();

@@ -1,4 +1,4 @@
-//! Random graphs of modules have the same board after each turn on any number of threads, and when they are replayed.
+//! Tests that random graphs of modules have the same board after each turn on any number of threads, and in a replay.
 
 use std::time::{Duration, Instant};
 
@@ -8,15 +8,15 @@ use super::graph::{Chance, change, hash, load};
 use super::{PERIOD, workers};
 use crate::{Arrivals, Candidate, Fault, Module, ModuleState, Modules, Out, Service, Threads, Turn};
 
-/// Number of turns of a run.
+/// Number of turns in a run.
 const TURNS: u64 = 10_000;
 
-/// Returns the number of random graphs: `count` times `MDLE_LONG`.
+/// Returns the number of random graphs: `count` times the environment variable `MDLE_LONG`, or `count` without it.
 fn graphs(count: u64) -> u64 {
     count * std::env::var("MDLE_LONG").ok().and_then(|times| times.parse::<u64>().ok()).unwrap_or(1)
 }
 
-/// Runs a random graph; returns the hash of the board after each turn, and what arrived at each break.
+/// Runs a random graph; returns the hash of the board after each turn, and the arrivals at each turn break.
 fn run(mut modules: Modules<f64>, seed: u64) -> (Vec<u64>, Vec<Arrivals>) {
     load(&mut modules, seed);
     modules.prepare();
@@ -63,7 +63,7 @@ fn stepped_time_is_the_same_on_any_threads() {
     }
 }
 
-/// A module that now and then needs longer than a turn, and counts its turns.
+/// A module that counts its turns, some of which take longer than their deadline.
 struct Dawdler {
     turns: Out<f64>,
     count: u64,

@@ -1,4 +1,4 @@
-//! Faults of modules: each concerns its module alone, and no turn waits longer than until its deadline.
+//! Tests that a fault affects only its own module, and that no turn waits beyond its deadline.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex};
@@ -12,14 +12,14 @@ use crate::{
     Turn,
 };
 
-/// A module that counts its turns, and does something special in one of them.
+/// A module that counts its turns, and performs an action in one of them.
 struct Counter {
     turns: Out<f64>,
     count: f64,
     other: (u64, Deed),
 }
 
-/// The special action of a module in its turn.
+/// Action of a module in its turn.
 type Deed = fn(&mut Turn<'_, f64>, Out<f64>) -> Result<(), Fault>;
 
 impl Module<f64> for Counter {
@@ -39,7 +39,7 @@ fn healthy(name: &str) -> Candidate<f64> {
     counter(name, 0, |_, _| Ok(()))
 }
 
-/// Returns modules on these threads.
+/// Returns the modules, loaded on these threads.
 fn modules(threads: Threads, candidates: impl IntoIterator<Item = Candidate<f64>>) -> Modules<f64> {
     let mut modules = Modules::new(threads, Service::WhenReady).unwrap();
     candidates.into_iter().for_each(|candidate| modules.load(candidate).unwrap());
@@ -47,7 +47,7 @@ fn modules(threads: Threads, candidates: impl IntoIterator<Item = Candidate<f64>
     modules
 }
 
-/// Makes turns, and returns the events with the turns in which they happened.
+/// Makes turns; returns the events, each with the turn in which it occurred.
 fn events(modules: &mut Modules<f64>, turns: std::ops::Range<u64>) -> Vec<String> {
     let each = turns.map(|number| {
         turn(modules, number);
@@ -68,7 +68,7 @@ fn a_module_that_fails_or_panics_makes_no_further_turn() {
             turn 5: module `panics` makes no further turn: its code panicked, which is a bug: index 7 of 3
             ");
         }
-        // The turn of the fault publishes nothing.
+        // The turn with the fault publishes nothing.
         let counts = ["fails", "panics", "well"].map(|name| number(&modules, name, "turns"));
         assert_eq!(counts, [Some((3.0, 2)), Some((5.0, 4)), Some((10.0, 9))]);
         assert_eq!(modules.names().nth(1), Some(("panics", ModuleState::Failed)));
@@ -121,7 +121,7 @@ fn nan_is_never_published() {
     assert_eq!((number(&modules, "bad", "turns"), modules.board().posts()[0].refused), (Some((4.0, 3)), 1));
 }
 
-/// A door at which modules wait until a test opens it.
+/// A door at which modules block until a test opens it.
 #[derive(Default)]
 struct Door(Mutex<bool>, Condvar);
 
@@ -132,7 +132,7 @@ impl Door {
     }
 }
 
-/// A module that counts its turns, and waits at a door in one of them.
+/// A module that counts its turns, and blocks at a door in one of them.
 struct Waits {
     turns: Out<f64>,
     count: f64,
@@ -159,8 +159,8 @@ fn waits(name: &str, door: &Arc<Door>) -> Candidate<f64> {
     Candidate::registered(name, make).unwrap()
 }
 
-/// Makes a turn whose deadline only a waiting module misses; the engine's time passes fast. Returns `true` if
-/// the turn lasted until the deadline.
+/// Makes a turn with a deadline that only a blocked module misses; each turn advances the engine's clock by 100
+/// periods. Returns `true` if the turn lasted until the deadline.
 fn turn_until(modules: &mut Modules<f64>, number: u64) -> bool {
     let deadline = Instant::now() + Duration::from_secs(1);
     modules.turn(0.0, number, Nanos(number * 100 * PERIOD), Some(deadline));
@@ -172,7 +172,7 @@ fn turn_until(modules: &mut Modules<f64>, number: u64) -> bool {
 
 #[test]
 fn a_module_that_never_returns_costs_one_turn() {
-    // As many as there are workers, and taken before the others.
+    // The blocking modules occupy both workers, and are taken before the other modules.
     let door = Arc::<Door>::default();
     let mut modules =
         modules(workers(2), [healthy("well"), healthy("fine"), waits("first", &door), waits("second", &door)]);
@@ -188,7 +188,7 @@ fn a_module_that_never_returns_costs_one_turn() {
     turn 13: module `second` is given up: it has not ended its turn
     ");
     assert_eq!(over, [3]);
-    // In the turn in which both workers hang nobody is left for the others.
+    // In the turn in which both workers hang, no worker runs the other modules.
     let turns = |name| modules.board().post(name, "turns").unwrap().reading.clone().unwrap().value.number();
     assert_eq!(["first", "well", "fine"].map(turns), [Some(3.0), Some(39.0), Some(39.0)]);
     modules.unload("first").unwrap();
@@ -246,7 +246,7 @@ fn a_module_that_is_late_again_is_counted() {
     assert!(modules.late_turns("slow") >= 3);
 }
 
-/// A background module that acts specially at its exchange of this number.
+/// A background module that can panic in, or return after, a given exchange.
 struct Busy {
     out: Out<f64>,
     read: In<f64>,
@@ -291,7 +291,7 @@ fn an_exchange_waits_for_the_next_break() {
     modules.prepare();
     for number_of in 0..100 {
         turn(&mut modules, number_of);
-        // The value that the module read was published at the previous break.
+        // The value that the module read was published at the previous turn break.
         let read = if number_of == 0 { -1.0 } else { number_of as f64 };
         assert_eq!(number(&modules, "endless", "out"), Some((read, number_of)));
     }
@@ -331,7 +331,7 @@ fn a_module_that_has_failed_delays_no_end() {
     assert!(begun.elapsed() < Duration::from_secs(10), "{:?}", begun.elapsed());
 }
 
-/// A background module that fails at once.
+/// A background module that fails immediately.
 struct Fails;
 
 impl Background for Fails {

@@ -1,4 +1,4 @@
-//! Random graphs of modules, whose values depend on everything that they read.
+//! Random graphs of modules. The values of a module depend on everything that it reads.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use crate::{
     Background, Candidate, Declare, Exchange, Fault, In, Module, Modules, Out, Reading, Relevance, Turn, Value,
 };
 
-/// A random number generator (`xorshift64*`), whose numbers depend only on its seed.
+/// A random number generator (`xorshift64*`) whose numbers depend only on its seed.
 #[derive(Debug, Clone)]
 pub(super) struct Chance(u64);
 
@@ -27,7 +27,7 @@ impl Chance {
     }
 }
 
-/// Mixes a number into a state, so that different numbers lead to different states.
+/// Mixes a number into a state; different numbers give different states.
 pub(super) fn mixed(state: u64, number: u64) -> u64 {
     (state ^ number).wrapping_mul(0x0100_0000_01b3).rotate_left(23)
 }
@@ -38,13 +38,13 @@ pub(super) struct Mixer {
     gain: In<f64>,
     outs: Vec<Out<f64>>,
     state: u64,
-    /// The module publishes in turns whose state is a multiple of this number.
+    /// The module publishes in turns in which its state is a multiple of this number.
     rarity: u64,
 }
 
-/// Declares attributes that a random module reads.
+/// Declares the attributes that a random module reads.
 fn reads(declare: &mut Declare, chance: &mut Chance, modules: u64) -> Vec<In<f64>> {
-    // Modules of higher numbers are loaded later, and the highest does not exist.
+    // Modules with higher numbers are loaded later, and no module has the highest number.
     let names = (0..chance.below(4)).map(|_| (chance.below(modules + 1), chance.below(2)));
     let names: Vec<_> = names.collect();
     names.iter().map(|(module, out)| declare.reads(&format!("m{module}"), &format!("out{out}"))).collect()
@@ -85,7 +85,7 @@ impl Module<f64> for Mixer {
     }
 }
 
-/// A background module that mixes the values that it reads, and is slow.
+/// A slow background module that mixes all values that it reads into its state.
 pub(super) struct Slow {
     reads: Vec<In<f64>>,
     out: Out<f64>,
@@ -129,11 +129,11 @@ pub(super) fn load(modules: &mut Modules<f64>, seed: u64) {
     }
 }
 
-/// Makes a random change of the modules, as people do.
+/// Makes a random change of the modules, as a user would.
 pub(super) fn change(modules: &mut Modules<f64>, seed: u64, turn: u64) {
     let mut chance = Chance::new(mixed(seed, turn));
     let name = format!("m{}", chance.below(12));
-    // There need be no such module, and it may have no such setting.
+    // The module may not exist, or may not have the setting.
     match chance.below(40) {
         0 => _ = modules.hold(&name, true),
         1 | 2 => _ = modules.hold(&name, false),
@@ -143,7 +143,7 @@ pub(super) fn change(modules: &mut Modules<f64>, seed: u64, turn: u64) {
     }
 }
 
-/// Returns a hash of the board: every value and its time.
+/// Returns a hash of the board, of every value and its time.
 pub(super) fn hash(modules: &Modules<f64>) -> u64 {
     let readings = modules.board().posts().iter().map(|post| post.reading.as_ref());
     let words = readings.map(|reading| match reading {

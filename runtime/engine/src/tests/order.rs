@@ -1,4 +1,4 @@
-//! Order of a turn and of a turn break, settings, and relevance.
+//! Tests the order of a turn and its turn break, settings, and relevance.
 
 use std::sync::{Arc, Mutex};
 
@@ -45,7 +45,7 @@ fn source(name: &str) -> Candidate<f64> {
 
 #[test]
 fn each_link_of_a_chain_costs_a_turn() {
-    // The order of loading does not matter.
+    // The order in which the modules are loaded has no effect.
     let mut modules = sequential();
     for candidate in [next("second", "first"), next("first", "source"), source("source")] {
         modules.load(candidate).unwrap();
@@ -75,7 +75,7 @@ fn an_attribute_vanishes_with_its_module() {
     modules.prepare();
     (2..5).for_each(|number| turn(&mut modules, number));
     assert_eq!((modules.board().post("source", "out"), number(&modules, "first", "out")), (None, Some((1.0, 1))));
-    // It is wired again to a module of the same name.
+    // The reader is connected to a new module with the same name.
     modules.load(source("source")).unwrap();
     modules.prepare();
     (5..8).for_each(|number| turn(&mut modules, number));
@@ -102,7 +102,7 @@ fn wrong_kinds_and_names_are_refused_at_load() {
     };
     let refusal = modules.load(reader("reader")).unwrap_err();
     assert_eq!(refusal.to_string(), "module `reader` reads /usr/source/out as a flag, and it is published as a number");
-    // The other way round it is the module that publishes which is refused.
+    // In the opposite order, the module that publishes the attribute is refused.
     modules.unload("source").unwrap();
     modules.load(reader("reader")).unwrap();
     assert_eq!(modules.load(source("source")).unwrap_err(), refusal);
@@ -134,7 +134,7 @@ fn wrong_kinds_and_names_are_refused_at_load() {
     );
 }
 
-/// A module that publishes its setting, and keeps a journal.
+/// A module that publishes its setting and keeps a journal.
 struct Journal {
     gain: In<f64>,
     out: Out<f64>,
@@ -242,7 +242,7 @@ fn workers_take_urgent_modules_first() {
             Ok(())
         }
     }
-    // Their cost does not come into it before the 128th turn.
+    // The modules are not sorted by cost before turn 128.
     for threads in [Threads::Sequential, super::workers(1)] {
         let mut modules = Modules::new(threads, Service::WhenDue).unwrap();
         for (name, priority) in [('a', 0), ('b', -1), ('c', 5), ('d', 0)] {

@@ -1,4 +1,4 @@
-//! The desk: the hub's counterpart on the thread that drives the robot.
+//! The desk serves the requests of the hub on the thread that drives the robot.
 
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, sync_channel};
@@ -12,55 +12,55 @@ use super::shared::{NO_VALUE, Pending, Shared, Snapshot};
 use super::watch::{REPORTS, Watches};
 use super::{Answer, Change, Node, Operation, Tree, Value};
 
-/// Maximum number of changes that one break carries out.
+/// Maximum number of changes that a single turn break carries out.
 const EACH_BREAK: usize = 16;
 
 /// Maximum number of attempts to publish the last snapshot.
 const CLOSING: usize = 5;
 
-/// The channel by which a request for a change is answered. Dropping the reply means that the run has ended.
+/// Channel for the answer to a change. Dropping it means that the run has ended.
 #[derive(Debug)]
 pub struct Reply(Sender<Answer>);
 
 impl Reply {
-    /// Sends the answer; the front end may no longer wait for it.
+    /// Sends the answer, even if the front end no longer waits for it.
     pub fn answer(self, answer: Answer) {
         let _ = self.0.send(answer);
     }
 }
 
-/// A part of the engine that has nodes in the tree. `M` is the type of the data that the part gets at a break.
+/// A part of the engine with nodes in the tree. `M` is the type of the data that the part gets at a turn break.
 pub trait Served<M: ?Sized> {
     /// Returns the nodes of the part with their paths, in a fixed order.
     fn nodes(&self, moment: &M) -> Vec<(String, Node)>;
 
-    /// Appends a value for each node, in the order of [`Served::nodes`]: `None` for methods, and while a node
-    /// has no value.
+    /// Appends a value for each node, in the order of [`Served::nodes`]: `None` for a method, and for a node that has
+    /// no value yet.
     fn values(&self, moment: &M, to: &mut Vec<Option<Value>>);
 
-    /// Carries out a change of one of the part's nodes. The change agrees with the node's kind, access and role. The
-    /// part may keep `reply`, to answer at a later break.
+    /// Carries out a change of one of the part's nodes. The change has been checked against the node's kind, access and
+    /// role. The part may keep `reply` to answer at a later turn break.
     fn change(&mut self, path: &str, change: &Change, moment: &mut M, reply: Reply);
 }
 
-/// The desk, which serves requests at breaks. Only [`Desk::wait`] waits.
+/// The desk, which serves requests at turn breaks. Only [`Desk::wait`] waits.
 #[derive(Debug)]
 pub struct Desk {
     shared: Arc<Shared>,
     requests: Receiver<Pending>,
     tree: Arc<Tree>,
-    /// For each node of the tree, the position of its value among the values of the parts.
+    /// Index of each node's value among the values of all parts, in the order of the tree.
     places: Vec<usize>,
     number: u64,
     watches: Watches,
     /// Replies to requests to watch an attribute, which are sent after the attribute's first report.
     watchers: Vec<Reply>,
-    /// The changes that breaks have carried out since the last [`Desk::take_carried_out`], as commands.
+    /// Changes that turn breaks have carried out since the last [`Desk::take_carried_out`], as commands.
     carried_out: Vec<String>,
 }
 
 impl Desk {
-    /// Returns a desk, and the hub whose requests it answers.
+    /// Returns a desk, and the hub that sends requests to it.
     #[must_use]
     pub fn with_hub() -> (Hub, Self) {
         let (queue, requests) = sync_channel(QUEUE);
@@ -90,18 +90,18 @@ impl Desk {
         served
     }
 
-    /// Waits for a change, at most for this long, and carries it out; returns `true` if there was one.
+    /// Waits for a change, at most for this time, and carries it out; returns `true` if there was one.
     pub fn wait<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M, time: Duration) -> bool {
         match self.requests.recv_timeout(time) {
             Ok(pending) => return self.carry_out(pending, parts, moment),
             Err(RecvTimeoutError::Timeout) => {}
-            // Without front ends there is nothing to wait for.
+            // Without front ends, no request can arrive.
             Err(RecvTimeoutError::Disconnected) => std::thread::sleep(time),
         }
         false
     }
 
-    /// Publishes the last snapshot of the run, which remains available.
+    /// Publishes the last snapshot of the run, which remains readable after the run.
     pub fn close<M: ?Sized>(&mut self, parts: &[&mut dyn Served<M>], moment: &M, t: Nanos) {
         self.shared.wanted.store(true, Ordering::SeqCst);
         for _ in 0..CLOSING {
@@ -114,13 +114,13 @@ impl Desk {
         }
     }
 
-    /// Returns the changes that breaks have carried out since the last call, as commands of the shell.
+    /// Returns the changes that turn breaks have carried out since the last call, as commands of the shell.
     pub fn take_carried_out(&mut self) -> Vec<String> {
         std::mem::take(&mut self.carried_out)
     }
 
-    /// Carries out a request; returns `true` if it was a change. A request to read only ends the wait for requests: the
-    /// front end reads the snapshot that follows.
+    /// Carries out a request; returns `true` if it was a change. A read request only ends the wait for requests: the
+    /// front end reads the next snapshot.
     fn carry_out<M: ?Sized>(
         &mut self,
         Pending { request, reply }: Pending,
@@ -149,7 +149,8 @@ impl Desk {
         true
     }
 
-    /// Publishes a snapshot if a front end wants one, and reports watched attributes; the last turn was at `t`.
+    /// Publishes a snapshot if a front end waits for one, and reports watched attributes; `t` is the time of the last
+    /// turn.
     pub fn publish<M: ?Sized>(&mut self, parts: &[&mut dyn Served<M>], moment: &M, t: Nanos) {
         self.show(parts, moment, t);
         self.watchers.drain(..).for_each(|reply| reply.answer(Answer::Done(String::new())));
@@ -183,7 +184,7 @@ impl Desk {
         }
         self.number = self.number.saturating_add(1);
         let snapshot = Arc::new(Snapshot { tree: Arc::clone(&self.tree), values, number: self.number });
-        // A front end holds the lock while it copies a pointer; the next break tries again.
+        // A front end holds the lock while it copies a pointer. If so, the next turn break tries again.
         if let Ok(mut kept) = self.shared.snapshot.try_lock() {
             self.shared.wanted.store(false, Ordering::SeqCst);
             *kept = snapshot;
@@ -194,7 +195,7 @@ impl Desk {
 
 impl Drop for Desk {
     fn drop(&mut self) {
-        // A front end that is about to wait holds the lock.
+        // The lock prevents that a front end misses the notification between its check and its wait.
         let _kept = self.shared.snapshot.lock().unwrap_or_else(PoisonError::into_inner);
         self.shared.ended.store(true, Ordering::SeqCst);
         self.shared.changed.notify_all();

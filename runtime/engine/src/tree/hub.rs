@@ -1,4 +1,4 @@
-//! The hub between the front ends and the thread that drives the robot.
+//! The hub passes requests from the front ends to the thread that drives the robot.
 
 use std::collections::BTreeSet;
 use std::sync::atomic::Ordering;
@@ -11,14 +11,14 @@ use super::proposal::proposal;
 use super::shared::{NO_VALUE, Pending, Shared, Snapshot};
 use super::{Access, Answer, Change, Node, Operation, Request, Role, Tree};
 
-/// Maximum number of changes that wait for a break.
+/// Maximum number of changes that wait for a turn break.
 pub const QUEUE: usize = 64;
-/// Time between two calls of the function that a front end runs while it waits.
+/// Interval at which a waiting front end's function is called.
 const LOOK: Duration = Duration::from_millis(50);
-/// Maximum wait for a snapshot that is newer than the request.
+/// Maximum wait for a snapshot newer than the request.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Commands, each with the channel of its answer.
+/// Commands, each with the channel for its answer.
 type LateAnswers = Vec<(String, Receiver<Answer>)>;
 
 /// The hub, which front ends use. Its methods may wait.
@@ -27,17 +27,17 @@ pub struct Hub {
     shared: Arc<Shared>,
     queue: SyncSender<Pending>,
     reports: Arc<Mutex<Receiver<String>>>,
-    /// Requests whose front end no longer waits, as commands, with their answers to come.
+    /// Requests for which the front end no longer waits, as commands, with the channels for their answers.
     later: Arc<Mutex<LateAnswers>>,
 }
 
 impl Hub {
-    /// Returns the hub for the data that it shares with a desk.
+    /// Returns the hub that shares this data with a desk.
     pub(super) fn new(shared: Arc<Shared>, queue: SyncSender<Pending>, reports: Receiver<String>) -> Self {
         Self { shared, queue, reports: Arc::new(Mutex::new(reports)), later: Arc::default() }
     }
 
-    /// Waits for the first break of the run; returns `false` if the run has ended before it.
+    /// Waits for the first turn break of the run; returns `false` if the run ends before it.
     #[must_use]
     pub fn has_begun(&self) -> bool {
         self.shared.wanted.store(true, Ordering::SeqCst);
@@ -52,8 +52,8 @@ impl Hub {
         self.shared.ended.load(Ordering::SeqCst)
     }
 
-    /// Returns the next answer to a request whose front end no longer waits, or the next report of a
-    /// watched attribute: its time, path and value. Waits for a report at most for this long.
+    /// Returns the next answer to a request for which the front end no longer waits, or the next report of a watched
+    /// attribute: time, path and value. Waits for a report at most for this time.
     #[must_use]
     pub fn report(&self, wait: Duration) -> Option<String> {
         if let Some(answer) = self.late_answer() {
@@ -68,9 +68,9 @@ impl Hub {
         self.wait(request, Duration::MAX, &mut || ())
     }
 
-    /// Answers a request. A change waits until a break has carried it out, or at most for `patience`: then
-    /// [`Hub::report`] returns its answer. Meanwhile, `meanwhile` is called at intervals. After the run, only readings
-    /// are answered.
+    /// Answers a request. Waits at most for `patience` until a turn break has carried out a change; after that time,
+    /// [`Hub::report`] returns the answer. Calls `meanwhile` at intervals while it waits. After the run, only read
+    /// requests are answered.
     #[must_use]
     pub fn wait(&self, request: Request, patience: Duration, meanwhile: &mut dyn FnMut()) -> Answer {
         let Some(snapshot) = self.snapshot() else { return Answer::Ended };
@@ -107,7 +107,7 @@ impl Hub {
         }
     }
 
-    /// Removes an answer that has come after its front end no longer waited for it, and returns it with its command.
+    /// Removes an answer that came after the front end stopped waiting, and returns it with its command.
     fn late_answer(&self) -> Option<String> {
         let mut later = self.later.lock().unwrap_or_else(PoisonError::into_inner);
         let (place, answer) = later.iter().enumerate().find_map(|(place, (_, answer))| match answer.try_recv() {
@@ -135,13 +135,13 @@ impl Hub {
         paths.collect::<BTreeSet<_>>().into_iter().collect()
     }
 
-    /// Returns the node with this path in the last snapshot; `None` if there is none.
+    /// Returns the node with this path in the last snapshot; `None` if it does not exist.
     #[must_use]
     pub fn node(&self, path: &str) -> Option<Node> {
         self.lock().tree.get(path).copied()
     }
 
-    /// Queues a change, and waits for its answer.
+    /// Queues a change, and waits for the answer.
     fn change(&self, request: Request, patience: Duration, meanwhile: &mut dyn FnMut()) -> Answer {
         let (command, begun) = (request.to_string(), Instant::now());
         let (reply, answer) = channel();
@@ -164,13 +164,13 @@ impl Hub {
         }
     }
 
-    /// Returns a snapshot that was taken after the call. If the robot makes no turn within [`PATIENCE`], or the run has
-    /// ended, returns the last snapshot, or `None` if there is none.
+    /// Returns a snapshot that was taken after the call. Returns the last snapshot if the robot makes no turn within
+    /// [`PATIENCE`] or the run has ended, and `None` if there is no snapshot.
     fn snapshot(&self) -> Option<Arc<Snapshot>> {
         let mut kept = self.lock();
         let before = kept.number;
         self.shared.wanted.store(true, Ordering::SeqCst);
-        // A desk that waits for a request while the clock stands looks at once.
+        // Wakes a desk that waits for a request while the clock is paused.
         let request = Request { path: String::new(), operation: Operation::Get, role: Role::View };
         let _ = self.queue.try_send(Pending { request, reply: channel().0 });
         let is_old = |kept: &mut Arc<Snapshot>| kept.number == before && !self.shared.ended.load(Ordering::SeqCst);
@@ -183,8 +183,7 @@ impl Hub {
     }
 }
 
-/// Returns the answer about a path that does not exist, or that is a folder instead of a node or a node instead of a
-/// folder.
+/// Returns the answer about a path that does not exist, or about a folder where a node is expected or vice versa.
 fn nothing(tree: &Tree, path: &str) -> Answer {
     if !names(tree, path).is_empty() {
         return Answer::Refused(format!("`{path}` is a folder: `ls {path}` lists it"));
@@ -197,7 +196,7 @@ fn nothing(tree: &Tree, path: &str) -> Answer {
     Answer::Refused(format!("there is nothing at `{path}`{proposal}"))
 }
 
-/// Returns the reason why a change does not agree with the access, role or kind of a node; `None` if it does.
+/// Returns the reason why a change is refused because of the node's access, role or kind; `None` if it is allowed.
 fn refusal(path: &str, node: &Node, change: &Change, request: &Request) -> Option<String> {
     match (change, node.access) {
         (Change::Set(_), Access::Read) => return Some(format!("`{path}` is read-only")),

@@ -1,13 +1,13 @@
-//! The nodes of the tree: the operations on each, and the roles that may perform them.
+//! The nodes of the tree, with the operations on them and the roles that may perform these operations.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use mdle_quantity::Quantity;
 
-/// The nodes by their paths. A folder is a path with which other paths begin.
+/// All nodes by path. A folder is a prefix of the paths of several nodes.
 pub type Tree = BTreeMap<String, Node>;
 
-/// Returns the names in a folder; names of folders end with `/`.
+/// Returns the names in a folder; folder names end with `/`.
 pub(super) fn names(tree: &Tree, folder: &str) -> Vec<String> {
     let inside = format!("{folder}/");
     let names = tree.keys().filter_map(|path| path.strip_prefix(&inside));
@@ -18,17 +18,17 @@ pub(super) fn names(tree: &Tree, folder: &str) -> Vec<String> {
 /// An attribute or a method of the tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Node {
-    /// Operations on the node.
+    /// Operations that the node permits.
     pub access: Access,
     /// Kind of the node's value.
     pub kind: Kind,
-    /// The lowest role that may set or call the node.
+    /// Lowest role that may set or call the node.
     pub role: Role,
     /// Description of the node, as a noun phrase.
     pub doc: &'static str,
 }
 
-/// Operations on a node.
+/// Operations that a node permits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
     /// The node can be read.
@@ -60,7 +60,7 @@ pub enum Kind {
     Bytes,
 }
 
-/// The roles of users. Each role may do everything that the roles before it may.
+/// Role of a user. Each role includes the rights of the roles before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Role that may only read.
@@ -74,7 +74,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// All roles, the lowest first.
+    /// All roles, lowest first.
     pub const ALL: [Self; 4] = [Self::View, Self::Tune, Self::Swap, Self::Admin];
 
     /// Returns the name of the role.

@@ -1,4 +1,4 @@
-//! Proposals for a path that does not exist: the path that the user may have meant.
+//! Proposes an existing path that the user may have meant by a path that does not exist.
 
 use mdle_compiler::alphabet::nearest;
 
@@ -8,8 +8,8 @@ use super::node::names;
 /// Maximum number of names in a sentence.
 const NAMED: usize = 12;
 
-/// Returns the end of a sentence about a path that does not exist: a path with the same ending, a similar path,
-/// or the names in the last folder of the path that exists.
+/// Returns the end of a sentence about a path that does not exist: a path with the same ending, a similar path, or the
+/// names in the deepest existing folder of the path.
 pub(super) fn proposal(tree: &Tree, path: &str) -> String {
     let mean = |path: &str| format!("; did you mean `{path}`?");
     let mut alike = tree.keys().filter(|known| path.len() > 1 && known.ends_with(path));
@@ -31,7 +31,7 @@ pub(super) fn proposal(tree: &Tree, path: &str) -> String {
     if is_changed { mean(&known) } else { String::new() }
 }
 
-/// Returns the end of a sentence about a folder with these names.
+/// Returns the end of a sentence that lists the names in a folder.
 fn content(folder: &str, names: &[String]) -> String {
     let folder = if folder.is_empty() { "/" } else { folder };
     match names {
@@ -40,7 +40,7 @@ fn content(folder: &str, names: &[String]) -> String {
     }
 }
 
-/// Lists names in a sentence, at most twelve.
+/// Returns a list of names for a sentence, at most twelve.
 pub(crate) fn listed<S: AsRef<str>>(names: &[S]) -> String {
     let first: Vec<_> = names.iter().take(NAMED).map(AsRef::as_ref).collect();
     match names.len().saturating_sub(NAMED) {

@@ -1,4 +1,4 @@
-//! Requests to the tree, and their answers, which are the same for all front ends.
+//! Requests to the tree and their answers, in the form that all front ends use.
 
 use std::fmt;
 
@@ -15,17 +15,17 @@ pub struct Request {
     pub role: Role,
 }
 
-/// Operation on a node.
+/// Operation on a node or folder.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Operation {
     /// List the names in a folder.
     List,
     /// Read the value of an attribute.
     Get,
-    /// Set an attribute or call a method; waits for a break.
+    /// Set an attribute or call a method, at the next turn break.
     Change(Change),
-    /// Report an attribute whenever it changes, from the next break on, if this is `true`; stop reporting it if
-    /// this is `false`. See [`Hub::report`](super::Hub::report).
+    /// Start (`true`) or stop (`false`) reporting changes of an attribute, from the next turn break on. See
+    /// [`Hub::report`](super::Hub::report).
     Watch(bool),
 }
 
@@ -47,7 +47,7 @@ impl fmt::Display for Request {
     }
 }
 
-/// A change, which a break carries out.
+/// A change that a turn break carries out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Change {
     /// Set an attribute to the value that this text represents.
@@ -59,14 +59,14 @@ pub enum Change {
 /// The answer to a request.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
-    /// The names in a folder; names of folders end with `/`.
+    /// Names in a folder; folder names end with `/`.
     Entries(Vec<String>),
     /// A value.
     Value(String),
-    /// Sentence about a change that was carried out; it may be empty.
+    /// Sentence about a change that was carried out; may be empty.
     Done(String),
     /// Sentence with the reason why the request was refused.
     Refused(String),
-    /// The run has ended, or has not begun, so that no desk answers.
+    /// No desk answers: the run has ended, or has not begun.
     Ended,
 }

@@ -6,10 +6,10 @@ use std::sync::{Arc, Condvar, Mutex};
 
 use super::{Answer, Request, Tree, Value};
 
-/// Text of an attribute that has no value.
+/// Text shown for an attribute without a value.
 pub(super) const NO_VALUE: &str = "(no value yet)";
 
-/// All readable values, as of one break.
+/// Values of all readable nodes as of one turn break.
 #[derive(Debug, Default)]
 pub(super) struct Snapshot {
     pub(super) tree: Arc<Tree>,
@@ -29,7 +29,7 @@ pub(super) struct Shared {
     pub(super) ended: AtomicBool,
 }
 
-/// A waiting change, and the reply for its answer.
+/// A change that waits, and the channel for its answer.
 #[derive(Debug)]
 pub(super) struct Pending {
     pub(super) request: Request,

@@ -1,4 +1,4 @@
-//! Values of attributes, as they are shown and typed; quantities have the units of plans.
+//! Values of attributes in the form in which they are shown and typed; quantities have the units of the plan language.
 
 use std::fmt::{self, Write as _};
 use std::sync::Arc;
@@ -29,7 +29,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns a text as a value.
+    /// Returns text as a value.
     #[must_use]
     pub fn text(text: &str) -> Self {
         Self::Text(text.into())
@@ -43,7 +43,7 @@ impl Value {
 }
 
 impl fmt::Display for Value {
-    /// Writes the value as it may be typed: numbers with units to a millionth.
+    /// Writes the value in the form in which it can be typed; numbers with units are rounded to a millionth.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Flag(flag) => write!(f, "{flag}"),
@@ -60,7 +60,7 @@ impl fmt::Display for Value {
     }
 }
 
-/// A number with its unit, rounded to a millionth; infinity is `none`.
+/// A number with its unit, rounded to a millionth; infinity is shown as `none`.
 struct Rounded(f64, &'static str);
 
 impl fmt::Display for Rounded {
@@ -88,7 +88,7 @@ fn separated<T: fmt::Display>(f: &mut fmt::Formatter<'_>, parts: impl Iterator<I
 /// Reads a value of this kind.
 ///
 /// # Errors
-/// Fails with a sentence that says what to type instead.
+/// Fails with a sentence that explains what to type instead.
 pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
     match kind {
         Kind::Flag => match text {
@@ -135,7 +135,7 @@ fn number(text: &str) -> Option<f64> {
     text.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
-/// Reads a number with a unit of this quantity, and returns it in `unit`.
+/// Reads a number with a unit of this quantity, and converts it to `unit`.
 fn quantity_of(text: &str, quantity: Quantity, unit: &str) -> Result<f64, String> {
     if number(text).is_some() {
         let smaller = Quantity::of_unit(&format!("c{unit}")).filter(|(other, ..)| *other == quantity);
@@ -143,7 +143,7 @@ fn quantity_of(text: &str, quantity: Quantity, unit: &str) -> Result<f64, String
         return Err(format!("`{text}` has no unit: write {smaller}`{text}{unit}`"));
     }
     let read = quantity.read(text, unit);
-    // A number alone has been refused.
+    // A number without a unit was refused above.
     let number = read.map_err(|refusal| refusal.replace(&format!(", or a number in {unit}"), ""))?;
     let (_, factor, divisor) = Quantity::of_unit(unit).unwrap_or((quantity, 1.0, 1.0));
     Ok(number * divisor / factor)

@@ -1,11 +1,10 @@
-//! Attributes that a front end watches. Each is reported when its value has changed, but at most at a rate at which
-//! people can read.
+//! Attributes that a front end watches. Changed values are reported, but at most at a rate that users can read.
 
 use std::sync::mpsc::SyncSender;
 
 use mdle_runtime::Nanos;
 
-/// Minimum time between two reports of one attribute, by the robot's clock.
+/// Minimum time between two reports of an attribute, on the robot's clock.
 const APART: Nanos = Nanos(200_000_000);
 /// Maximum number of watched attributes.
 const MOST: usize = 32;
@@ -22,7 +21,7 @@ pub(super) struct Watches {
 #[derive(Debug)]
 struct Watched {
     path: String,
-    /// The value that was reported last; `None` before the first report.
+    /// Last reported value; `None` before the first report.
     reported: Option<String>,
     /// Earliest time at which the attribute may be reported again.
     next: Nanos,
@@ -33,7 +32,7 @@ impl Watches {
         Self { watched: Vec::new(), reports }
     }
 
-    /// Watches an attribute from now on.
+    /// Starts watching an attribute.
     ///
     /// # Errors
     /// Fails with a sentence if too many attributes are watched.
@@ -59,17 +58,17 @@ impl Watches {
         Ok(())
     }
 
-    /// Returns `true` if some attribute may be reported at time `t`.
+    /// Returns `true` if an attribute may be reported at time `t`.
     pub(super) fn are_due(&self, t: Nanos) -> bool {
         self.watched.iter().any(|watched| t >= watched.next)
     }
 
-    /// Reports the attributes that have changed; `value` returns the value of a path, as it is shown.
+    /// Reports the attributes that have changed; `value` returns the displayed value of a path.
     pub(super) fn report(&mut self, t: Nanos, value: impl Fn(&str) -> String) {
         let Self { watched, reports } = self;
         for Watched { path, reported, next } in watched.iter_mut().filter(|watched| t >= watched.next) {
             let value = value(path);
-            // A report that does not fit is made later.
+            // A report that does not fit into the queue is tried again later.
             if reported.as_ref() != Some(&value)
                 && reports.try_send(format!("{:.1} s  {path} {value}", t.seconds())).is_ok()
             {
