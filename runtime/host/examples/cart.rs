@@ -58,7 +58,7 @@ enum Breakdown {
 impl Cart {
     fn tell(&self, what: std::fmt::Arguments<'_>) {
         if self.tells {
-            // In one piece: the host writes there too.
+            // Written in one call, because the host writes to standard error too.
             let _ = std::io::stderr().write_all(format!("cart: {what}\n").as_bytes());
         }
         if let Some(mut journal) = self.journal.as_ref() {

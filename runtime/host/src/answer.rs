@@ -1,5 +1,4 @@
-//! Prints the output of an executable that makes no run: help, the answer that an option asks for, or an error in the
-//! arguments.
+//! Prints the output of an executable that makes no run: help, the answer to an option, or an error in the arguments.
 
 use std::io::{ErrorKind, Write};
 
@@ -18,8 +17,8 @@ pub(crate) fn unparsed<'o>(error: clap::Error, out: impl FnOnce() -> Box<dyn Wri
     print_answer(&error.render().to_string(), &mut *out(), err)
 }
 
-/// Prints the answer that an option asks for instead of a run, and returns the exit status. A reader may close the
-/// stream early; any other write error, as of a full disk, is reported.
+/// Prints the answer that an option requests instead of a run, and returns the exit status. A reader that closes the
+/// stream early causes no error; any other write error, such as a full disk, is reported.
 pub(crate) fn print_answer(answer: &str, out: &mut dyn Write, err: &mut dyn Write) -> u8 {
     match write!(out, "{}", PrintableLines(answer)).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
@@ -30,8 +29,8 @@ pub(crate) fn print_answer(answer: &str, out: &mut dyn Write, err: &mut dyn Writ
     }
 }
 
-/// Removes clap's proposal for an unknown option unless at most a third of the letters differ: `--period`, for example,
-/// is no help for `--speed`, which only simulated robots have.
+/// Removes clap's suggestion for an unknown option unless at most a third of the letters differ: `--period`, for
+/// example, is a useless suggestion for `--speed`, which only simulated robots have.
 fn with_near_option(mut error: clap::Error) -> clap::Error {
     let text = |kind| match error.get(kind) {
         Some(ContextValue::String(text)) => text.trim_start_matches('-').split('=').next().unwrap_or_default(),

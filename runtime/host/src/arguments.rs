@@ -27,7 +27,7 @@ const STATUSES: [(&str, &str); 7] = [
     ("128+N", "terminated by signal N"),
 ];
 
-/// The promise of docs/src/promises.md, in short.
+/// Short form of the promise in docs/src/promises.md.
 const STOPPED: &str = "The robot is stopped at the end, except after SIGKILL, a crash or a lost line: then only its \
                        own watchdog stops it.";
 
@@ -50,8 +50,8 @@ pub(crate) struct Options {
     pub(crate) path: Option<PathBuf>,
 }
 
-/// Returns the command line of a program for this target. The usage line begins with the words by which the program was
-/// called, or with the plan's name if these are unknown.
+/// Returns the command-line parser of a program for this target. The usage line begins with the words with which the
+/// program was called, or with the plan's name if these words are unknown.
 pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call) -> Command {
     let seconds = target.period.as_secs_f64();
     let name = program.plan;

@@ -14,34 +14,34 @@ use crate::patience::{AT_THE_END, Patience};
 /// Stack size of a thread that only writes, in bytes. All memory of a run is locked, so the stack is as small as
 /// possible.
 pub(crate) const STACK: usize = 128 * 1024;
-/// Maximum size of the text that waits for a slow reader, in bytes.
+/// Maximum size, in bytes, of the text that is queued for a slow reader.
 const WAITING: usize = 1 << 20;
-/// Size from which text is passed to the thread without a flush, in bytes.
+/// Size, in bytes, from which text is passed to the thread without a flush.
 const PIECE: usize = 1 << 16;
-/// Maximum size of a single write, in bytes; a reader that accepts this much is still reading.
+/// Maximum size of a single write, in bytes. Each completed write shows that the reader has not stalled.
 const CHUNK: usize = 1 << 13;
 /// Maximum time without progress on a file that must be complete, while a robot is driven.
 const LAG: Duration = Duration::from_secs(5);
 /// Maximum wait between two checks of the deadline.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Treatment of text for which a slow reader leaves no space while a robot is driven.
+/// Policy for text that does not fit into the queue of a slow reader while a robot is driven.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Keeps {
-    /// Text for people: it is left out, and a line reports that.
+    /// Text for people: it is dropped, and a line reports that.
     WhatIsRead,
-    /// A file that must be complete: missing space is an error.
+    /// A file that must be complete: a full queue is an error.
     All,
 }
 
-/// A writer whose `flush` returns at once while a robot is driven. Otherwise `flush` returns when all text is written,
-/// or when the patience of the run ends; dropping the writer waits in the same way.
+/// A writer whose `flush` returns at once while a robot is driven. At other times, `flush` waits until all text is
+/// written, but at most as long as [`Patience`] permits; dropping the writer waits in the same way.
 #[derive(Debug)]
 pub(crate) struct Outlet {
     piece: Vec<u8>,
     keeps: Keeps,
     patience: Patience,
-    /// `true` if text has been lost since the last text that was passed to the thread.
+    /// `true` if text has been dropped since the last text that was passed to the thread.
     lost: bool,
     /// `true` once the writer no longer waits for the reader.
     given_up: bool,
@@ -57,7 +57,7 @@ struct Shared {
 #[derive(Debug)]
 struct Queue {
     pieces: VecDeque<Vec<u8>>,
-    /// Number of bytes that wait or are being written.
+    /// Number of bytes that are queued or being written.
     bytes: usize,
     /// Time at which the reader last accepted text, or at which an idle thread last received text.
     moved: Instant,
@@ -69,14 +69,14 @@ struct Queue {
 
 impl Shared {
     fn queue(&self) -> MutexGuard<'_, Queue> {
-        // Nothing in here panics half way.
+        // No code panics while it holds this lock.
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Queue {
-    /// Appends a piece of text, or returns it as the error if there is no space. An empty queue has space for a piece
-    /// of any length.
+    /// Appends a piece of text, or returns it as the error if the queue has no space. An empty queue has space for a
+    /// piece of any length.
     fn push(&mut self, piece: Vec<u8>) -> Result<(), Vec<u8>> {
         if self.bytes > 0 && self.bytes.saturating_add(piece.len()) > WAITING {
             return Err(piece);
@@ -124,7 +124,7 @@ impl Outlet {
         Aside(Arc::clone(&self.shared))
     }
 
-    /// Passes the text so far to the thread.
+    /// Passes the text collected so far to the thread.
     fn hand_over(&mut self) -> io::Result<()> {
         if self.piece.is_empty() {
             return Ok(());
@@ -153,7 +153,7 @@ impl Outlet {
         if lags { Err(too_slow(LAG)) } else { Ok(()) }
     }
 
-    /// Handles text for which there is no space: leaves it out, or returns an error.
+    /// Handles text that does not fit into the queue: drops it, or returns an error.
     fn without_room(&mut self) -> io::Result<()> {
         match self.keeps {
             Keeps::WhatIsRead if self.is_driving() => {
@@ -169,7 +169,8 @@ impl Outlet {
         }
     }
 
-    /// Waits until all text is written, or until the patience of the run ends.
+    /// Waits until all text is written, at most as long as the run's phase permits; does not wait while a robot is
+    /// driven.
     fn drain(&mut self) -> io::Result<()> {
         let shared = Arc::clone(&self.shared);
         let begun = Instant::now();
@@ -228,7 +229,7 @@ impl Write for Outlet {
 
 impl Drop for Outlet {
     fn drop(&mut self) {
-        // An error that comes only now is about the last lines of a report; the robot stands already.
+        // An error at this point affects only the last lines of a report, after the robot was stopped.
         let _ = self.flush();
         self.shared.queue().is_closed = true;
         self.shared.changed.notify_all();

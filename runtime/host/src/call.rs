@@ -1,4 +1,4 @@
-//! The call of a program that runs a plan: the words of its name, and its options.
+//! Command line by which a program that runs a plan was called: the words of its name, and its options.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ pub struct Call {
     pub later_path: Option<String>,
 }
 
-/// Data of a plan in a record, as far as the program knows them.
+/// Data about a plan that a record contains, if the program knows them.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RecordedPlan {
     /// Name and text of each file of the plan, the plan's own file first; empty for an executable, which has no texts.
@@ -58,7 +58,7 @@ impl Call {
         Some([&[name.to_owned()], others].concat().join(" ".as_ref()).to_string_lossy().into_owned())
     }
 
-    /// Returns the name of the program and the options, as a parser of command lines expects them.
+    /// Returns the name of the program and the options, as a command-line parser expects them.
     pub(crate) fn arguments(&self) -> impl Iterator<Item = &OsString> {
         self.words.iter().take(1).chain(&self.options)
     }
@@ -78,11 +78,11 @@ impl Call {
     }
 }
 
-/// Options with a value that do not determine a run: they name files that the run writes, or processors.
+/// Options with a value that do not influence a run: they name files that the run writes, or processors.
 const BESIDE: [&str; 8] =
     ["--log", "--plot", "--record", "--trail", "--trips", "--record-path", "--recorded-paths", "--threads"];
 
-/// Returns the options that determine a run, without the options for its log, its pictures and its tables.
+/// Returns the options that influence a run, without the options for its log, its pictures and its tables.
 pub fn determining(options: &[OsString]) -> impl Iterator<Item = OsString> {
     let mut was_beside = false;
     let others = options.iter().filter(move |option| {

@@ -1,5 +1,5 @@
-//! Formats transitions and places of atoms for reports: the operands that fired with their values, as the plan's author
-//! wrote them, and their lines.
+//! Formats transitions and places of atoms for reports. A transition is shown by the operands that fired, as written in
+//! the plan, with their values and lines.
 
 use std::fmt;
 
@@ -48,7 +48,7 @@ pub fn place(plan: &dyn Texts, passes: &Passes, atom: u32) -> String {
     let (fsm, source) = (plan.fsm(), plan.source());
     let Some(own) = fsm.atoms.get(atom as usize).map(|atom| atom.scope) else { return String::new() };
     let around = outwards(fsm, own).filter_map(|(number, bracket)| match bracket.kind {
-        // The plan itself is around every atom.
+        // The plan itself encloses every atom, so its name is left out.
         Kind::Scope { .. } => Some(plan.name(number)).filter(|name| number > 0 && !name.is_empty()).map(str::to_owned),
         Kind::Loop { times: 0, .. } => Some(format!("pass {}", passes.of(number))),
         Kind::Loop { times, .. } => Some(format!("pass {} of {times}", passes.of(number))),

@@ -140,7 +140,7 @@ impl<I: Instants> Clock<I> {
                 Some(self.origin.saturating_add(self.place.saturating_mul(self.period)))
             }
             Time::Stepped(Pace::Times(times)) => {
-                // The conversion saturates, and 2^53 nanoseconds, up to which it is exact, are three months.
+                // The conversion saturates, and is exact up to 2^53 nanoseconds, which are three months.
                 let places = self.place.saturating_sub(self.paced_from);
                 let after = (places as f64 * self.period as f64 / times) as u64;
                 let late = nanos(self.instants.now()).saturating_sub(self.origin.saturating_add(after));

@@ -1,7 +1,7 @@
 //! The control cycle: exchange, time, a turn, and the wait for the next turn (docs/src/reference/semantics.md, 5.1).
 //!
-//! In an executable, only a plan takes part in a turn; in other programs, an engine runs modules as well. The cycle
-//! handles exchange, limits, signals and the end of a run in every case.
+//! In an executable, only a plan takes part in a turn; in other programs, an engine runs modules as well. For both, the
+//! cycle handles exchange, limits, signals and the end of a run.
 
 use std::time::Duration;
 
@@ -37,12 +37,12 @@ pub(crate) trait Turns {
     /// Sends the input of the last turn, or the null input before the first turn, and reads the next output.
     ///
     /// # Errors
-    /// Returns a sentence for the operator about the robot's fault.
+    /// Returns a message for the operator if the robot has a fault.
     fn exchange(&mut self) -> Result<(), String>;
     /// Makes turn `number`, counted from 0, with the output that was read at `t`.
     ///
     /// # Errors
-    /// Returns the reason why the run must end although the robot has no fault.
+    /// Returns the reason if the run must end although the robot has no fault.
     fn turn(&mut self, t: Nanos, number: u64) -> Result<Step, RunEnd>;
     /// Returns the new pace of stepped time; `None` if the pace does not change.
     fn pace(&mut self) -> Option<Pace> {

@@ -1,5 +1,5 @@
-//! Interface to a plan on its robot without the types of the plan and the robot. The host is therefore compiled once,
-//! and each executable compiles only its own turn.
+//! Interface to a plan on its robot that does not depend on the types of the plan and the robot. The host is therefore
+//! compiled once, and each executable compiles only its own turn.
 
 use std::any::Any;
 use std::time::Duration;
@@ -21,17 +21,17 @@ pub(crate) trait Drive {
     /// Sends the input of the last turn, or the null input before the first turn, and reads the next output.
     ///
     /// # Errors
-    /// Returns a sentence for the operator about the robot's fault.
+    /// Returns a message for the operator if the robot has a fault.
     fn exchange(&mut self) -> Result<(), String>;
     /// Sends the null input.
     ///
     /// # Errors
-    /// Returns a sentence for the operator about the robot's fault.
+    /// Returns a message for the operator if the robot has a fault.
     fn release(&mut self) -> Result<(), String>;
     /// Stops the robot.
     ///
     /// # Errors
-    /// Returns a sentence for the operator about the robot's fault.
+    /// Returns a message for the operator if the robot has a fault.
     fn stop(&mut self) -> Result<(), String>;
     /// Returns the value of [`Robot::longest_gap`].
     fn longest_gap(&self) -> Option<Duration>;
@@ -49,7 +49,7 @@ pub(crate) trait Drive {
     /// Makes turn `number` with the last output at time `t`; the first turn begins the plan.
     ///
     /// # Errors
-    /// Returns the reason why the run must end although the robot has no fault.
+    /// Returns the reason if the run must end although the robot has no fault.
     fn turn(&mut self, t: Nanos, number: u64, transitions: &mut Transitions) -> Result<Turn<()>, RunEnd>;
     /// Calls `say` with each message for the operator since the last call.
     fn messages(&mut self, say: &mut dyn FnMut(&str));
@@ -69,9 +69,10 @@ pub(crate) trait Drive {
     fn after_plan(&mut self) -> AfterPlan;
     /// Calls the supervisor, if there is one, at the break after `turns` turns, the last of them at time `t`.
     fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders;
-    /// Tells the supervisor, if there is one, the last state of a run that ends before its plan, after `turns` turns.
+    /// Passes the last state of a run that ends before its plan, after `turns` turns, to the supervisor, if there is
+    /// one.
     fn at_end(&mut self, turns: u64, t: Nanos, report: &Report<'_>);
-    /// Tells the supervisor, if there is one, the reason for the end of a run, and the exit status.
+    /// Passes the reason for the end of a run, and the exit status, to the supervisor, if there is one.
     fn ended(&mut self, why: &str, status: u8);
 
     /// Returns the robot's observer, if it has an observer.

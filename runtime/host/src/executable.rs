@@ -1,4 +1,4 @@
-//! Interface to the target and the plan of an executable without their types.
+//! Interface to the target and the plan of an executable that does not depend on their types.
 
 use std::marker::PhantomData;
 use std::os::fd::BorrowedFd;
@@ -120,7 +120,7 @@ where
         request: &StopRequest,
         store: PathStore,
     ) -> Result<Box<dyn Drive + '_>, Refusal> {
-        // Without a pilot the robot need not be opened.
+        // The pilot is created first: if that fails, the robot is not opened.
         let time = T::time(matches).map_err(Refusal::Usage)?;
         let terms = RunTerms { time, period, request: request.clone(), microphones: Microphones::default() };
         let pilot = (self.pilot)(&terms)?;

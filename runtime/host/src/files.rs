@@ -1,5 +1,5 @@
-//! Reads files that an operator names: regular files up to a maximum size, but never a pipe, which would wait for a
-//! writer.
+//! Reads files that an operator names: regular files up to a maximum size, but never a pipe, because reading it would
+//! wait for a writer.
 
 use std::fs::{self, FileType, OpenOptions};
 use std::io::{self, Read as _};
@@ -11,14 +11,15 @@ use rustix::fs::OFlags;
 /// Reads a regular file of at most `most` bytes.
 ///
 /// # Errors
-/// Returns the system's error; or, as the end of a sentence about the file, that it is not a regular file or is larger.
+/// Fails if the system reports an error, or if the file is not regular or is larger than `most` bytes. The message is
+/// the end of a sentence about the file.
 pub fn read_file(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    // To open a device or a pipe may already do something to it.
+    // Opening a device or a pipe may already have an effect.
     regular(fs::metadata(path)?.file_type())?;
     let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
     let file = OpenOptions::new().read(true).custom_flags(flags).open(path)?;
     let metadata = file.metadata()?;
-    // Something else may have the name by now.
+    // The path may lead to another file by now.
     regular(metadata.file_type())?;
     let too_large = || io::Error::other(format!("it is larger than {}, which is the most", size(most)));
     if metadata.len() > most {
@@ -56,7 +57,7 @@ fn regular(kind: FileType) -> io::Result<()> {
     Err(io::Error::other(format!("it is a {what}; expected a regular file")))
 }
 
-/// Returns a size in words, in the largest unit in which it is a whole number.
+/// Formats a size in megabytes if it is a whole number of megabytes, and in bytes if not.
 fn size(bytes: u64) -> String {
     if bytes.is_multiple_of(1_000_000) { format!("{} MB", bytes / 1_000_000) } else { format!("{bytes} bytes") }
 }

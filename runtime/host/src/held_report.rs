@@ -1,4 +1,4 @@
-//! Stores a report until the live view has left the screen; of a very long report, only the last part is shown.
+//! Holds back a report until the live view has left the screen. Only the last part of a very long report is shown.
 
 use std::io::{self, Write};
 

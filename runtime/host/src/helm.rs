@@ -52,7 +52,7 @@ where
         Self { pilot, supervised, t: Nanos::ZERO, asked: None, input: PilotInput::<B>::default() }
     }
 
-    /// Makes turn `number` with output `y` at time `t`; afterwards the input is [`Helm::input`].
+    /// Makes turn `number` with output `y` at time `t`; [`Helm::input`] then returns the resulting input.
     ///
     /// # Errors
     /// Fails if [`Pilot::turn`] fails.

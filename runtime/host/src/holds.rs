@@ -2,9 +2,9 @@
 
 use mdle_runtime::Nanos;
 
-/// Number of times that a report shows that a rule begins to hold the robot, until the rule pauses for [`PAUSE`].
+/// Maximum number of holds of a rule that a report shows, until the rule pauses for [`PAUSE`].
 const REPORTED: u32 = 3;
-/// Time since a rule last began to hold the robot after which a report shows the rule again.
+/// Time after which a report shows a rule again, counted from when the rule last began to hold the robot.
 const PAUSE: Nanos = Nanos(10_000_000_000);
 
 /// Counters of the safety rules that have held the robot.
@@ -25,8 +25,8 @@ struct HoldsOfRule {
 }
 
 impl Holds {
-    /// Records that a rule begins to hold the robot at time `t`. Returns the end of the line for the report; `None` if
-    /// the report has no line about it.
+    /// Records that a rule begins to hold the robot at time `t`. Returns text to append to the report's line about it;
+    /// `None` if the report shows no line.
     pub(crate) fn begins(&mut self, rule: &str, t: Nanos) -> Option<&'static str> {
         let known = self.rules.iter().position(|holds| holds.rule == rule);
         self.last = known.unwrap_or(self.rules.len());
@@ -44,7 +44,7 @@ impl Holds {
         }
     }
 
-    /// Returns `true` if the report has a line when the plan goes on after the robot was last held.
+    /// Returns `true` if the report announces the end of the latest hold, when the plan continues.
     pub(crate) fn is_followed(&self) -> bool {
         self.rules.get(self.last).is_none_or(|holds| holds.count < REPORTED)
     }

@@ -15,7 +15,7 @@ pub(crate) trait Instants {
     /// Requests from the system that it wakes this thread on time.
     ///
     /// # Errors
-    /// Returns a sentence if the system does not permit that.
+    /// Returns a message if the system does not permit that.
     fn keep_time(&mut self) -> Result<(), String> {
         Ok(())
     }

@@ -20,7 +20,7 @@ impl Interruption {
         let signals = Signals::listen()?;
         second_signal::watch(&signals)?;
         signals.robot_runs(Time::Stepped(Pace::Max));
-        // Nothing has to be stopped.
+        // There is no robot to stop.
         signals.patience().stop_was_tried(None);
         Ok(Self(signals))
     }

@@ -6,8 +6,8 @@
 //! files; and [`Quantity`] for options with lengths and times. Generated code uses [`run`]. An engine that makes the
 //! turns of a run itself implements the trait [`Pilot`].
 //!
-//! The robot is stopped in every case: when the plan ends, an exchange fails, code panics, a signal arrives, or a limit
-//! is reached.
+//! The robot is stopped however a run ends: when the plan ends, an exchange fails, code panics, a signal arrives, or a
+//! limit is reached.
 #![forbid(unsafe_code)]
 
 mod answer;
@@ -141,7 +141,8 @@ pub use whole_file::{Unfinished, WholeFile};
 /// 3 a fault stopped the robot, or a requested file could not be written; 4 `--timeout` or `--turns`; 5 the plan has
 /// ended, but not as required; 128+N signal N. In every case the robot was stopped.
 ///
-/// The function handles the signals of the process, and replaces its panic hook by one that never makes the robot wait.
+/// The function handles the signals of the process, and replaces its panic hook by a hook that never makes the robot
+/// wait.
 pub fn run<'a, T: Target, P>(program: impl Into<Program<'a>>, plan: impl Fn() -> P + Sync) -> ExitCode
 where
     P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
@@ -178,7 +179,7 @@ where
     execute(program.into(), call, &PlanOnTarget::<T, _, _>::new(plan, &pilot).supervised(supervision))
 }
 
-/// Checks the options of `call` as [`run_called`] does, for a program for the target `T`.
+/// Checks the options of `call` for the target `T`, as [`run_called`] does.
 ///
 /// # Errors
 /// Returns the message for standard error if an option is invalid.
@@ -197,7 +198,7 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
     let signals = match signals {
         Ok(signals) => signals,
         Err(error) => {
-            // Without them Ctrl-C would leave the robot moving.
+            // Without signal handlers, Ctrl-C would leave the robot moving.
             run_end::say(&mut io::stderr(), format_args!("error: signals cannot be caught: {error}"));
             return ExitCode::from(run_end::FAULT);
         }
@@ -218,7 +219,7 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
         }
     };
     let begun = std::time::Instant::now();
-    // A person in a session types where the line would be.
+    // In a session, a user types where the progress line would be.
     let shows_progress = io::stderr().is_terminal() && executable.session().is_none();
     let elapsed = shows_progress.then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
     let out = || Box::new(out) as Box<dyn Write>;

@@ -48,8 +48,8 @@ pub(crate) struct Entry<'a> {
 }
 
 impl Entry<'_> {
-    /// Returns the additional keys of a turn with a supervisor as JSON, each with a comma before it; `None` if there
-    /// are none.
+    /// Returns the additional keys of a turn with a supervisor as JSON, each with a leading comma; `None` if there are
+    /// none.
     fn more(&self) -> Option<String> {
         let plan = (self.plan_number > 1).then(|| format!(",\"plan\":{}", self.plan_number));
         let safety = self.supervised.intervention().map(|Intervention { verdict, rule, .. }| {
@@ -124,13 +124,13 @@ impl<'p> UnchangedFile<'p> {
     }
 }
 
-/// A newly created file, which is removed when this is dropped.
+/// A newly created file, which is removed when this value is dropped.
 #[derive(Debug)]
 struct New<'p>(&'p Path);
 
 impl Drop for New<'_> {
     fn drop(&mut self) {
-        // The start has been refused with its own sentence; an empty file left behind is not worth another.
+        // The refused start has its own message; an empty file that remains does not need a second message.
         let _ = fs::remove_file(self.0);
     }
 }

@@ -21,7 +21,7 @@ struct Sound {
 
 /// A function that gives a robot the microphones of its run, on a head with this radius in metres.
 ///
-/// The function returns a sentence for the operator if the robot has no sound.
+/// The function returns a message for the operator if the robot has no sound.
 pub type EarsOf<R> = fn(&mut R, Microphones, f64) -> Result<(), String>;
 
 impl Microphones {

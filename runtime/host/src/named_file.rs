@@ -31,10 +31,10 @@ enum Identity {
     New(PathBuf),
 }
 
-/// Checks that no option names a file for writing that another option names, or this program.
+/// Checks that each file that the run writes is named by only one option, and is not this program.
 ///
 /// # Errors
-/// Returns a sentence for the operator with the options that name the same file.
+/// Returns a message for the operator with the options that name the same file, if one of them names it for writing.
 pub(crate) fn check(mut files: Vec<NamedFile>) -> Result<(), Refusal> {
     if let Ok(path) = std::env::current_exe() {
         files.push(NamedFile { option: "", path, is_written: false });
@@ -64,7 +64,8 @@ fn clash(file: &NamedFile, other: &NamedFile) -> String {
     }
 }
 
-/// Returns the identity of the file at a path; `None` if it is not a regular file, such as a device, or is unknown.
+/// Returns the identity of the file at a path; `None` if the identity is unknown, or if the file is not regular, such
+/// as a device.
 fn identity(path: &Path) -> Option<Identity> {
     match fs::metadata(path) {
         Ok(found) => found.is_file().then(|| Identity::Known(found.dev(), found.ino())),
@@ -72,7 +73,7 @@ fn identity(path: &Path) -> Option<Identity> {
             let mut path = path.to_owned();
             for _ in 0..LINKS {
                 let Ok(target) = fs::read_link(&path) else { break };
-                // An absolute one replaces the folder.
+                // An absolute link target replaces the folder.
                 path = path.with_file_name("").join(target);
             }
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -1,4 +1,4 @@
-//! Functions with which a target lets its runs be observed and started over.
+//! Functions of a target for observing its runs and for starting them over.
 
 use std::fmt;
 use std::time::Duration;
@@ -11,9 +11,9 @@ use crate::{Batch, Observer, Refusal};
 pub struct Observation<R> {
     /// Function that returns the robot's observer.
     pub observer: fn(&mut R) -> &mut dyn Observer,
-    /// `true` if the robot itself handles `--watch`, `--plot`, `--record` and `--trail`, such as a simulator, which
-    /// knows the world; it leaves the screen when it is stopped. If `false`, the host handles these options by
-    /// odometry.
+    /// `true` if the robot itself handles `--watch`, `--plot`, `--record` and `--trail`, as a simulator does, which
+    /// knows the world; such a robot restores the screen when it is stopped. If `false`, the host handles these options
+    /// by odometry.
     pub draws: bool,
     /// Function that returns several runs, if the options request more than one run; only robots that can be started
     /// over have such options. No run has begun before the call.

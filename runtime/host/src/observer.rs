@@ -1,5 +1,5 @@
-//! Observer of a run, which shows a robot, such as a simulated one, the course of the plan that drives it. A driver of
-//! a real robot needs no observer. See docs/src/reference/interfaces.md, 7.4.
+//! Observer of a run, which informs a robot, such as a simulated one, about the course of the plan that drives it. A
+//! driver of a real robot needs no observer. See docs/src/reference/interfaces.md, 7.4.
 
 use std::fmt;
 
@@ -37,7 +37,7 @@ pub trait Observer {
     /// run.
     ///
     /// # Errors
-    /// Returns a sentence for the operator about a file that could not be written.
+    /// Returns a message for the operator if a file could not be written.
     fn finish(&mut self) -> Result<(), String> {
         Ok(())
     }

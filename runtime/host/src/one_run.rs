@@ -1,4 +1,4 @@
-//! The run of one robot: it is opened, makes its turns, and is always stopped.
+//! The run of one robot: the robot is opened, makes its turns, and is always stopped.
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -42,14 +42,14 @@ where
         Ok(ready) => driven(ready, settings, &plan.required, surroundings),
         Err(Refusal::Ended(stopped)) => ended_at_the_start(&surroundings.signals, stopped, surroundings.err),
         Err(refusal) => {
-            // A driver that refuses has stopped its robot, so the message is waited for.
+            // A driver that refuses has already stopped its robot, so the program can wait until the message is read.
             surroundings.signals.patience().stop_was_tried(None);
             refusal.tell(surroundings.err)
         }
     }
 }
 
-/// Returns what a record says of the run before its first turn.
+/// Returns the data of a run that a record contains before the first turn.
 fn begin(settings: &Settings<'_>, target: &str) -> Begin {
     let Settings { program, call, options, .. } = settings;
     let version = if program.version.is_empty() { env!("CARGO_PKG_VERSION") } else { program.version };
@@ -107,8 +107,8 @@ where
     status
 }
 
-/// Calls `run` with the robot and the recipients of the reports of its turns. A fast run shows its progress if
-/// `elapsed` is the clock for it.
+/// Calls `run` with the robot and the recipients of the reports of its turns. A progress line is shown if its clock,
+/// `elapsed`, is given.
 fn with_witnesses<'e>(
     ready: &mut Ready<'_>,
     report: &mut Report<'_>,
@@ -140,7 +140,7 @@ fn end(
 ) -> u8 {
     let Ready { mut drive, log, path, mut views, .. } = ready;
     let (ending, orderly, faults) = way_out::stop(&mut *drive, ending);
-    // A view that panics must not keep the report from being written.
+    // A panic in a view must not prevent the report.
     let _ = shielded(|| views.iter_mut().for_each(|views| views.stopped(drive.sensed())));
     let ending = way_out::judge(&mut *drive, ending, required, report);
     let orderly = orderly && ending.is_orderly();
@@ -151,12 +151,12 @@ fn end(
         views,
     };
     let status = way_out::tell(&mut *drive, ending, orderly, faults, report, files, err);
-    // It stands, and all is said; even code that panics while it tidies up must not change the status.
+    // The robot is stopped and the report is complete: a panic during the cleanup must not change the status.
     let _ = shielded(move || drop(drive));
     status
 }
 
-/// Warns about a permission that this computer does not give, and names the command that gives it.
+/// Warns that the system does not give a permission, so that turns may be late, and names the command that gives it.
 fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Write) {
     let program = program.map_or_else(|| "FILE".into(), |program| program.to_string_lossy());
     say(

@@ -90,7 +90,7 @@ fn number<'a>(rest: &'a str, bare: &str) -> (Token<'a>, usize) {
     let letters = rest.get(end..).unwrap_or("");
     let length = letters.find(|letter: char| !letter.is_ascii_alphabetic() && letter != '/').unwrap_or(letters.len());
     let written = letters.get(..length).unwrap_or("");
-    // As in `atIsection 0100`.
+    // A bit pattern, as in `atIsection 0100`.
     let is_pattern = length == 0 && digits.len() > 1 && digits.starts_with('0') && !digits.contains('.');
     match digits.parse::<f64>() {
         Ok(value) if !is_pattern => {

@@ -1,4 +1,4 @@
-//! The outcome of a run that is one of several.
+//! Outcome of a run in a batch of several runs.
 
 use mdle_runtime::Nanos;
 
@@ -15,7 +15,7 @@ pub(crate) enum Outcome {
     Bumped,
     /// The plan has ended, and the robot is outside its goal; the text says where.
     Astray(String),
-    /// The plan has ended by a cause that is not required.
+    /// The plan has ended by a cause other than the required ones.
     Otherwise,
     /// The run has reached its time limit before the plan has ended.
     TimedOut,

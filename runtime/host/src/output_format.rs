@@ -1,4 +1,4 @@
-//! Checks names of output files: a name is refused if it has another ending than that of the option's format.
+//! Checks the names of output files: a name with an ending is refused unless it is the ending of the option's format.
 
 use std::path::{Path, PathBuf};
 

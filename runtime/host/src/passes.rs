@@ -25,7 +25,7 @@ impl Passes {
         self.0.resize(fsm.brackets.len(), 1);
         let own = transition.atom.and_then(|atom| fsm.atoms.get(atom as usize));
         let (Some(own), Some(ended)) = (own, fsm.brackets.get(transition.scope as usize)) else { return };
-        // The first bracket around the scope that has something left to run: another element, or another pass.
+        // The innermost bracket around the scope that has something left to run: another element, or another pass.
         let mut goes_on = 0;
         for (number, around) in outwards(fsm, ended.parent).filter(|(number, _)| *number != transition.scope) {
             goes_on = number;

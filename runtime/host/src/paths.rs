@@ -91,7 +91,7 @@ pub(crate) fn load(
 
 /// Returns the files of the paths that a plan replays.
 pub(crate) fn files(matches: &ArgMatches, names: &[&'static str]) -> impl Iterator<Item = PathBuf> {
-    // A robot that replays none has no such option.
+    // A robot that replays no paths does not have this option.
     let folder = if names.is_empty() { None } else { matches.get_one::<PathBuf>("paths").cloned() };
     names.iter().map(move |name| place(folder.as_deref(), name))
 }

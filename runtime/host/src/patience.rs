@@ -1,5 +1,5 @@
-//! Determines how long a writer waits for its reader: without limit before the run, not at all while a robot is driven,
-//! and for a limited time afterwards.
+//! Determines how long a writer waits for its reader: not at all while a robot in real time is driven, for a limited
+//! time once the run is ending, and without limit before that.
 
 use std::sync::Arc;
 use std::sync::OnceLock;
@@ -15,7 +15,7 @@ pub(crate) const AT_THE_END: Duration = Duration::from_secs(2);
 #[derive(Debug, Clone)]
 pub(crate) struct Patience {
     request: StopRequest,
-    /// `true` once a robot in real time has been driven.
+    /// `true` from when a robot in real time begins to be driven.
     is_real: Arc<AtomicBool>,
     stopped: Arc<OnceLock<Stopped>>,
 }
@@ -30,7 +30,7 @@ pub(crate) struct Stopped {
 }
 
 impl Patience {
-    /// Returns the phase before a run, which `request` ends.
+    /// Returns the phase before a run. Once `request` is made, the run is ending.
     pub(crate) fn new(request: StopRequest) -> Self {
         Self { request, is_real: Arc::default(), stopped: Arc::default() }
     }

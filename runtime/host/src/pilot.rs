@@ -1,5 +1,5 @@
-//! Interface of the code that makes a run's turns: a plan in an executable, an engine with modules in `mdle`. The host
-//! handles exchange, limits, signals, reports and the safe stop in every case.
+//! Interface of the code that makes a run's turns: a plan in an executable, an engine with modules in `mdle`. For both,
+//! the host handles exchange, limits, signals, reports and the safe stop.
 
 use std::time::Duration;
 
@@ -22,7 +22,7 @@ pub trait Pilot {
     /// empty, and receives the transitions of the plan.
     ///
     /// # Errors
-    /// Returns the reason why the run must end although the robot has no fault.
+    /// Returns the reason if the run must end although the robot has no fault.
     fn turn(
         &mut self,
         moment: Moment<'_, <Self::Plan as Plan>::Output>,

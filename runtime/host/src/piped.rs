@@ -37,7 +37,7 @@ pub fn read_piped_text(path: &Path, most: u64) -> io::Result<String> {
 
 /// Reads a pipe to its end.
 fn read_pipe(path: &Path, most: u64) -> io::Result<Vec<u8>> {
-    // Without a writer, to open a pipe would otherwise wait for one.
+    // Without this flag, opening a pipe that has no writer would wait for one.
     let flags = OFlags::NONBLOCK.bits() as i32;
     let pipe = OpenOptions::new().read(true).custom_flags(flags).open(path)?;
     let mut bytes = Vec::new();
@@ -67,7 +67,7 @@ mod tests {
 
     use super::*;
 
-    /// The path of a pipe into which a thread writes these texts, with pauses.
+    /// Returns the path of a pipe into which a thread writes these texts, with pauses.
     fn piped(texts: &'static [&'static str]) -> (io::PipeReader, PathBuf) {
         let (reader, mut writer) = io::pipe().expect("a pipe");
         let path = PathBuf::from(format!("/proc/self/fd/{}", reader.as_raw_fd()));

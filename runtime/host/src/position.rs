@@ -1,4 +1,4 @@
-//! Interfaces to a plan and to the position in it, without the types of the plan and the robot.
+//! Interfaces to a plan and to the position in it that do not depend on the types of the plan and the robot.
 
 use mdle_runtime::{Frame, Fsm, Machine, Nanos, Plan, Words};
 

@@ -83,8 +83,8 @@ impl<'e> Progress<'e> {
 
     fn show(&mut self, line: &str) {
         let line: String = line.chars().take(LETTERS).collect();
-        // A reader that has gone is not a reason to stop a run. The cursor goes back, so that other output begins
-        // there.
+        // A closed reader is no reason to stop a run. The cursor returns to the start of the line, where other output
+        // begins.
         let _ = write!(self.err, "{line}\x1b[K\r").and_then(|()| self.err.flush());
         self.shown = true;
     }

@@ -1,4 +1,5 @@
-//! Opens the robot and the files before the first turn of a run, in an order in which a refused start changes no file.
+//! Opens the robot and the files before the first turn of a run, in an order that leaves all files unchanged if the
+//! start is refused.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -26,8 +27,8 @@ pub(crate) struct Ready<'p> {
     pub(crate) drive: Box<dyn Drive + 'p>,
     /// Source of the time of the turns.
     pub(crate) time: Time,
-    /// Log, or the error because of which it cannot begin. The error is not a refusal: the robot is already open, and
-    /// must be stopped.
+    /// Log, or the error that prevents it. The error does not refuse the run: the robot is already open, and must be
+    /// stopped.
     pub(crate) log: io::Result<Option<RunLog>>,
     /// Recorder of the driven path, if the path is recorded.
     pub(crate) path: io::Result<Option<Recorder>>,
@@ -56,7 +57,7 @@ pub(crate) fn ready<'p>(
         if options.path.is_some() {
             paths::check_period(options.period)?;
         }
-        // From here on a signal must not end the program before the robot was stopped.
+        // From here on, a signal must not end the program before the robot is stopped.
         signals.robot_runs(time);
         let drive = executable.connect(matches, options.period, &signals.stop_request(), store)?;
         let log = log.map(|file| begun(file, options, begin, is_watched(time), signals)).transpose();
@@ -135,7 +136,7 @@ fn untouched<'p>(what: &str, path: Option<&'p Path>) -> Result<Option<UnchangedF
     path.map(|path| UnchangedFile::open(path).map_err(|error| refused(path, error))).transpose()
 }
 
-/// Returns the refusal after a panic before the run.
+/// Converts a panic before the run to a refusal.
 pub(crate) fn bug_before<T>(Panicked(message): Panicked) -> Result<T, Refusal> {
     Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
 }

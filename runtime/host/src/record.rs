@@ -1,4 +1,4 @@
-//! The record of a run: an MCAP file with which the run can be repeated to the bit (docs/src/reference/interfaces.md,
+//! The record of a run: an MCAP file from which the run can be replayed bit for bit (docs/src/reference/interfaces.md,
 //! 6.6).
 //!
 //! The thread that drives the robot only encodes each turn. The thread of an [`Outlet`] converts the turns to messages,
@@ -19,7 +19,8 @@ use crate::log::Entry;
 use crate::supervised::Supervised;
 use crate::transitions::Operand;
 
-/// Time of the run, in nanoseconds, after which recorded data are passed to the system if a person may be watching.
+/// Interval of the run's time, in nanoseconds, at which recorded data are passed to the system if a person may be
+/// watching.
 const FLUSH: u64 = 1_000_000_000;
 
 /// A record that is being written.
@@ -38,7 +39,7 @@ pub(crate) struct Record<W = Outlet> {
     flushed: Nanos,
     /// Encoded frames of a turn.
     bytes: Vec<u8>,
-    /// Last intervention of the supervisor in the record.
+    /// Last recorded intervention of the supervisor.
     intervention: String,
 }
 
@@ -88,7 +89,7 @@ impl<W: Write> Record<W> {
         self.written(&unmade)
     }
 
-    /// Writes a turn that no plan has made and whose output has been stored.
+    /// Writes a turn that was made without a plan and whose output has been stored.
     ///
     /// # Errors
     /// Fails if the file cannot be written.

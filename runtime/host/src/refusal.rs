@@ -14,7 +14,7 @@ pub enum Refusal {
     Ended(Result<(), String>),
 }
 
-/// Writes the sentence about the refusal.
+/// Writes the message about the refusal.
 impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {

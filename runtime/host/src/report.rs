@@ -122,7 +122,7 @@ impl<'a> Report<'a> {
 
     /// Reports the supervisor's intervention in the turn at time `t`, unless it is the same as in the previous turn. A
     /// rule that limits inputs is reported only once, because it may start and stop with every turn. A rule that holds
-    /// the robot again and again is reported only the first times.
+    /// the robot repeatedly is reported only the first times.
     pub(crate) fn supervised(&mut self, t: Nanos, supervised: &Supervised) {
         let intervention = supervised.intervention();
         if let Some(limit) = intervention.filter(|it| it.verdict == Verdict::Limited)
@@ -185,7 +185,7 @@ impl<'a> Report<'a> {
     /// Shows the remaining lines.
     ///
     /// # Errors
-    /// Returns the error because of which lines are missing, unless the reader has closed the stream.
+    /// Returns the error that prevented lines from being written, unless the reader has closed the stream.
     pub(crate) fn close(mut self) -> io::Result<()> {
         self.flush();
         match self.state {

@@ -52,7 +52,7 @@ impl Required {
     /// Reads the required causes, and checks that `plan` can end by each of them.
     ///
     /// # Errors
-    /// Returns a sentence with a text to type instead if the plan cannot end by a cause.
+    /// Returns a message with a text to type instead if the plan cannot end by a cause.
     pub(crate) fn of(matches: &ArgMatches, plan: &dyn Texts) -> Result<Self, String> {
         let texts: Vec<String> = matches.get_many("require").into_iter().flatten().cloned().collect();
         let mut causes = Vec::new();
@@ -90,7 +90,7 @@ fn endings(plan: &dyn Texts, text: &str, may: impl Fn(u32) -> bool) -> impl Iter
     let scopes = scopes(plan.fsm()).filter(|scope| may(*scope)).flat_map(|scope| {
         let named = (!text.is_empty() && plan.name(scope) == text).then_some(Cause::Scope(scope));
         let operands: Vec<_> = plan.source().operands_of(scope).collect();
-        // A plan that was written in Rust has conditions, and no operands.
+        // A plan that was written in Rust has conditions but no operands.
         let whole = (operands.is_empty() && is_condition(text, plan.condition(scope))).then_some(Cause::Scope(scope));
         let parts = (0..).zip(operands).filter(|(_, operand)| is_operand(text, operand));
         let parts: Vec<Cause> = parts.map(|(number, _)| Cause::Operand(scope, number)).collect();

@@ -1,4 +1,4 @@
-//! The record of a robot whose turns are made outside of a run of its own, such as a robot of a scenario.
+//! The record of a robot that does not have a run of its own, such as a robot of a scenario.
 
 use std::fs::File;
 use std::io;
@@ -31,7 +31,7 @@ pub struct RobotTurn<'a> {
     pub kind: Turn<()>,
     /// The plan, and the state in which the turn ended; `None` if no plan has made the turn.
     pub plan: Option<(&'a dyn Texts, u64)>,
-    /// Number of the plan among those that have begun, from 1.
+    /// Number of the plan, from 1, in the order in which plans have begun.
     pub plan_number: u64,
     /// Reason why the plan has replaced another plan in this turn, if it has.
     pub begins: Option<&'a str>,

@@ -14,17 +14,17 @@ pub trait RobotSettings {
     /// Changes a setting from the next exchange on.
     ///
     /// # Errors
-    /// Returns a sentence with a text to type instead if there is no such setting, or if the value is invalid.
+    /// Returns a message with the text to type instead if there is no such setting, or if the value is invalid.
     fn set(&mut self, name: &str, value: &str) -> Result<(), String>;
 }
 
 /// A function that returns the settings of a robot.
 pub type SettingsOf<R> = fn(&mut R) -> &mut dyn RobotSettings;
 
-/// Reads an order in which sonars ping: one to sixteen numbers of sonars, which count from 0.
+/// Parses an order in which sonars ping: one to sixteen numbers of sonars, which count from 0.
 ///
 /// # Errors
-/// Returns a sentence with a text to type instead.
+/// Returns a message with the text to type instead if the order is invalid.
 pub fn sonar_order(text: &str) -> Result<Vec<u8>, String> {
     let number = |word: &str| word.parse().ok().filter(|number: &u8| usize::from(*number) < SONARS);
     let order: Option<Vec<u8>> = text.split_whitespace().map(number).collect();

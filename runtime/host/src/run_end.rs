@@ -1,4 +1,4 @@
-//! End of a run: the exit status, and the sentence on standard error. See docs/src/reference/interfaces.md, 6.3.
+//! End of a run: the exit status, and the message on standard error. See docs/src/reference/interfaces.md, 6.3.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -29,7 +29,7 @@ pub(crate) const SAFETY: u8 = 6;
 pub(crate) enum RunEnd {
     /// The plan has ended.
     Over,
-    /// The plan has ended, but not as `--require` or `--goal` demand, as the sentence says.
+    /// The plan has ended, but not as `--require` or `--goal` demand, for the reason in this sentence.
     Otherwise(String),
     /// The last plan has ended before the pilot's goal, for this reason.
     Failed(String),
@@ -51,7 +51,7 @@ pub(crate) enum RunEnd {
     Unstopped(String),
     /// The run log could not be written, for this reason.
     Log(String),
-    /// Too many turns took too long, as the sentence says.
+    /// Too many turns took too long; the sentence gives the times.
     Overrun(String),
     /// The turns could not continue, for this reason.
     Pilot(String),
@@ -69,9 +69,9 @@ pub(crate) enum RunEnd {
 impl RunEnd {
     /// Returns the exit status of the executable, given the faults after the end of the turns.
     ///
-    /// A robot that could not be stopped in good order, or an incomplete log, is a fault after any end. A driven path,
-    /// or a file of [`Observer::finish`](crate::Observer::finish), that could not be written is a fault only after the
-    /// end of the plan: any other reason for the end is more important.
+    /// A robot that could not be stopped properly, or an incomplete log, is a fault after any end. A driven path, or a
+    /// file of [`Observer::finish`](crate::Observer::finish), that could not be written is a fault only after the end
+    /// of the plan: any other reason for the end is more important.
     pub(crate) fn status(&self, faults: &[RunFault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {
             RunFault::Exchange(_) | RunFault::Log(_) | RunFault::Stop(_) => true,
@@ -98,7 +98,7 @@ impl RunEnd {
 
     /// Combines this end with the reason `stop` for which the stop failed, if it failed. Returns the resulting end, and
     /// the reason if it must still be reported. After a failed exchange the reason is not reported, because the
-    /// exchange's error is sufficient and mostly the same.
+    /// exchange's error is sufficient and usually the same.
     pub(crate) fn with_stop(self, stop: Option<String>) -> (Self, Option<String>) {
         match (self, stop) {
             (Self::Unstarted(fault) | Self::Robot(fault), Some(_)) => (Self::Unstopped(fault), None),
@@ -107,8 +107,8 @@ impl RunEnd {
     }
 
     /// Returns `true` if the robot still accepts inputs. No input is sent after a failed exchange, after too long a
-    /// time without a command, or after a panic, which leaves the robot in an unknown state; the stop command is sent
-    /// in any case.
+    /// time without a command, or after a panic, which leaves the robot in an unknown state; the stop command is always
+    /// sent.
     pub(crate) fn robot_listens(&self) -> bool {
         match self {
             Self::Over
@@ -148,7 +148,7 @@ impl RunEnd {
         }
     }
 
-    /// Returns one or two words for the reason why a run ended before its plan.
+    /// Describes in one or two words why a run ended before its plan.
     pub(crate) fn brief(&self) -> String {
         match self {
             Self::Over | Self::Otherwise(_) | Self::Failed(_) => "plan over".to_owned(),
@@ -264,6 +264,6 @@ impl Refusal {
 
 /// Writes a line to standard error.
 pub(crate) fn say(err: &mut dyn Write, line: fmt::Arguments<'_>) {
-    // When even that fails nobody is left to tell; the exit status still says it.
+    // If even this fails, only the exit status reports the end.
     let _ = writeln!(err, "{}", PrintableLines(line)).and_then(|()| err.flush());
 }

@@ -33,7 +33,7 @@ pub(crate) struct RunLog {
 pub(crate) enum Format {
     /// JSON lines, with an object for each turn.
     Lines(Log),
-    /// A record with which the run can be repeated.
+    /// A record from which the run can be replayed.
     Record(Box<Record>),
 }
 
@@ -64,7 +64,7 @@ impl RunLog {
         }
     }
 
-    /// Writes a turn that no plan has made.
+    /// Writes a turn that was made without a plan.
     ///
     /// # Errors
     /// Fails if the file cannot be written, and the run must not continue without the log.
@@ -91,7 +91,7 @@ impl RunLog {
     /// Writes the reason why the turns have ended; `turn` is the number of the last turn.
     pub(crate) fn ended(&mut self, turn: u64, t: Nanos, cause: &str) {
         match &mut self.format {
-            // An error comes back when the record is closed.
+            // An error is reported when the record is closed.
             Format::Record(record) if !self.has_ended => drop(record.ended(turn, t, cause)),
             Format::Lines(_) | Format::Record(_) => {}
         }

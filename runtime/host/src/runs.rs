@@ -1,7 +1,8 @@
 //! Several runs of one plan, with robots that differ in a seed. Several threads make the runs, and the results are
 //! reported in the order of the seeds.
 //!
-//! A run has the same result on every thread and beside any other runs: each run has its own robot, clock and plan.
+//! The result of a run depends neither on its thread nor on simultaneous runs: each run has its own robot, clock and
+//! plan.
 
 use std::io::Write;
 use std::num::{NonZeroU64, NonZeroUsize};
@@ -124,13 +125,13 @@ fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<Ende
             return;
         }
         let seed = batch.first.wrapping_add(number);
-        // The batch listens until all threads have ended.
+        // The receiver exists until all threads have ended, so sending cannot fail.
         let Some(run) = one(batch, seed, terms) else { return };
         let _ = done.send(run);
     }
 }
 
-/// Makes the run of a seed; returns `None` if a signal interrupted it.
+/// Makes the run with this seed; returns `None` if a signal interrupted it.
 fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
     let mut run = EndedRun { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut drive = match shielded(|| (batch.drive)(seed)).unwrap_or_else(panicked) {

@@ -8,14 +8,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Panicked(pub(crate) String);
 
-/// Runs `code`. After a panic its data may be inconsistent, so that the robot may only be stopped.
+/// Runs `code`. After a panic, the data of `code` may be inconsistent: the robot may only be stopped.
 ///
 /// # Errors
 /// Fails if the code panicked. The panic hook has then reported the place on standard error.
 pub(crate) fn shielded<T>(code: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(code)).map_err(|payload| {
         let message = text(&*payload);
-        // A payload may panic once more when it is dropped; it is small, and the program is about to end.
+        // Dropping a payload may panic again. It is small, and the program is about to end, so it is never dropped.
         std::mem::forget(payload);
         Panicked(message)
     })

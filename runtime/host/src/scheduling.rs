@@ -1,5 +1,4 @@
-//! Protects turns against other programs that would make them late, by real-time scheduling and by memory that is not
-//! paged out.
+//! Protects turns against delays by other programs, with real-time scheduling and memory that is not paged out.
 
 use rustix::mm::{MlockAllFlags, mlockall};
 use thread_priority::{
@@ -19,7 +18,7 @@ const MEMORY: &str = "locked memory";
 /// allocates nothing.
 ///
 /// # Errors
-/// Returns a sentence about a request that the system does not permit. The run continues without it.
+/// Returns a message about a request that the system does not permit. The run continues without it.
 pub(crate) fn claim() -> Result<(), String> {
     let is_scheduled = schedule(PRIORITY);
     let is_locked = mlockall(MlockAllFlags::CURRENT).is_ok();
@@ -28,8 +27,8 @@ pub(crate) fn claim() -> Result<(), String> {
     if refused.is_empty() { Ok(()) } else { Err(refused.join(" and ")) }
 }
 
-/// Gives this thread, which works for the thread that makes the turns, precedence over all ordinary threads, but not
-/// over that thread. Without permission the thread stays an ordinary one; the run warns about that.
+/// Gives this thread precedence over all ordinary threads, but not over the thread that makes the turns, for which it
+/// works. Without permission it stays an ordinary thread; the run warns about that.
 pub fn claim_for_worker() {
     let _ = schedule(PRIORITY.saturating_sub(1));
 }
@@ -63,7 +62,7 @@ mod tests {
 
     #[test]
     fn what_is_not_refused_is_granted() {
-        // Scheduling is the thread's own; this one is not needed any more.
+        // Scheduling is a property of a thread, so the test uses a thread of its own.
         let (answer, (policy, priority, locked)) = std::thread::spawn(|| (claim(), granted())).join().unwrap();
         let refused = |what: &str| answer.as_ref().is_err_and(|why| why.contains(what));
         let first_in_first_out = 1;

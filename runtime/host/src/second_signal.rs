@@ -1,4 +1,5 @@
-//! Handles a second signal, which ends a program that hangs, but not before an attempt to stop the robot.
+//! Lets a second signal end a program that hangs: after the attempt to stop the robot, or after ten seconds without an
+//! attempt.
 
 use std::io;
 use std::thread::{self, Builder};
@@ -13,12 +14,12 @@ use crate::run_end;
 use crate::signals::Signals;
 use crate::watch::leave_screen;
 
-/// Maximum time that the program continues after the attempt to stop the robot, if a second signal arrived.
+/// Time that the program continues after the attempt to stop the robot, if a second signal arrived.
 const AFTER_THE_STOP: Duration = Duration::from_secs(1);
-/// Maximum time that the program continues after the second signal without an attempt to stop the robot, whose code
-/// hangs.
+/// Time that the program continues after the second signal if the robot's code hangs, so that there is no attempt to
+/// stop the robot.
 const WITHOUT_A_STOP: Duration = Duration::from_secs(10);
-/// Time between two checks for the attempt to stop the robot.
+/// Interval at which the thread checks whether the attempt to stop the robot has ended.
 const LOOK: Duration = Duration::from_millis(10);
 
 /// Lets a second signal end the program, with the exit status known at that time. The terminal is restored.
@@ -37,7 +38,7 @@ pub(crate) fn watch(signals: &Signals) -> io::Result<()> {
     Ok(())
 }
 
-/// Ends the program some time after the attempt to stop the robot, or when there is no attempt for too long.
+/// Ends the program some time after the attempt to stop the robot, or when there has been no attempt for too long.
 fn end(signals: &Signals) {
     let begun = Instant::now();
     let known = loop {
@@ -50,6 +51,7 @@ fn end(signals: &Signals) {
     let of_the_signal = || signals.caught().map_or(run_end::FAULT, |signal| 128_u8.saturating_add(signal.number()));
     let status = known.unwrap_or_else(of_the_signal);
     leave_screen();
-    // Not by way of what the libraries do at an exit: they write what is left, and nobody may read that.
+    // Skips the exit handlers of the libraries: they write the remaining output, and would wait for a reader that has
+    // stalled.
     low_level::exit(status.into());
 }

@@ -105,7 +105,7 @@ where
     O: FnOnce() -> Box<dyn Write + 'o>,
 {
     let Surroundings { signals, watch, out, err, elapsed, .. } = surroundings;
-    // Nothing has to be stopped.
+    // No real robot has to be stopped.
     signals.robot_runs(Time::Stepped(Pace::Max));
     signals.patience().stop_was_tried(None);
     let terms = Terms {

@@ -37,7 +37,8 @@ const NAMED: [(Number, &str); 16] = [
     (Number::POWER, "SIGPWR"),
     (Number::SYS, "SIGSYS"),
 ];
-/// Numbers of the first and the last real-time signal. A C library reserves some of the first ones for itself.
+/// Numbers of the first and the last real-time signal. A C library reserves some of the first real-time signals for
+/// itself.
 const REAL_TIME: (u8, u8) = (34, 64);
 
 impl Signal {
@@ -110,7 +111,7 @@ impl Signals {
     pub(crate) fn listen() -> io::Result<Self> {
         let mut signals = Self { deadly: Arc::new(AtomicBool::new(true)), ..Self::unheard() };
         flag::register(Number::USR1.as_raw(), Arc::clone(&signals.timing))?;
-        // Ignored in effect: the write fails that would make the file too long.
+        // Has the effect of ignoring the signal: the write that exceeds the size limit fails instead.
         flag::register(Number::XFSZ.as_raw(), Arc::default())?;
         let ignored = ignored();
         for signal in Signal::all() {
@@ -123,7 +124,7 @@ impl Signals {
                 Ok(()) => signals.noted.push(signal),
             }
         }
-        // A program inherits the signals that its parent had blocked, and would never receive them.
+        // A program inherits the signals that its parent has blocked, and would never receive them.
         SigSet::all().thread_unblock()?;
         Ok(signals)
     }
@@ -132,13 +133,14 @@ impl Signals {
     fn note(&self, signal: Signal) -> io::Result<()> {
         let number = i32::from(signal.number());
         if signal == Signal::of(Number::BUS) {
-            // A real bus error comes again and again: only one from outside is noted.
+            // A real bus error recurs at once, so a second SIGBUS ends the program; a single one, sent from outside, is
+            // recorded.
             let noted = Arc::new(AtomicBool::new(false));
             flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&noted))?;
             flag::register(number, noted)?;
         }
         flag::register_usize(number, Arc::clone(&self.caught), usize::from(signal.number()))?;
-        // What signal-hook does not know the name of it cannot do as the system does.
+        // signal-hook cannot reproduce the default effect of a signal that it does not know by name.
         match flag::register_conditional_default(number, Arc::clone(&self.deadly)) {
             Ok(_) => Ok(()),
             Err(_) => flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&self.deadly)).map(|_| ()),
@@ -146,7 +148,7 @@ impl Signals {
     }
 
     /// Stops signals from ending the program: from now on they are only recorded, because the robot must be stopped
-    /// first. From now on, output does not delay a robot in real time.
+    /// first. Output no longer delays a robot in real time.
     pub(crate) fn robot_runs(&self, time: Time) {
         self.deadly.store(false, Ordering::SeqCst);
         if time == Time::Wall {

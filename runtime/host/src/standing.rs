@@ -8,7 +8,7 @@ use crate::passes::Passes;
 use crate::position::Position;
 use crate::{Around, PlanPosition};
 
-/// Course of a run up to its last turn, as far as the plan itself does not record it.
+/// Data about the course of a run up to its last turn that the plan itself does not record.
 #[derive(Debug, Default)]
 pub(crate) struct Course {
     /// Passes of the loops.

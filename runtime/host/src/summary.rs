@@ -83,7 +83,7 @@ impl Summary<'_> {
     /// none.
     fn times(&self) -> Option<(Nanos, &EndedRun)> {
         let mut good: Vec<&EndedRun> = self.good().collect();
-        // The first of equals is the one with the first seed: sorting keeps their order.
+        // The sort is stable: among runs with equal times, the run with the first seed comes first.
         good.sort_by_key(|run| run.t);
         let worst = *good.last()?;
         let worst = good.iter().find(|run| run.t == worst.t).copied().unwrap_or(worst);

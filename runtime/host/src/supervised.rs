@@ -11,7 +11,7 @@ pub(crate) struct Supervised {
     pub(crate) rule: String,
     /// Quantity that the rule limited.
     limited: Option<LimitedQuantity>,
-    /// Reason why another plan has replaced the plan in this turn, if one has.
+    /// Reason why another plan has replaced the plan in this turn; `None` if the plan was not replaced.
     pub(crate) begins: Option<String>,
     /// Requests that were fulfilled before the turn.
     pub(crate) requests: Vec<String>,

@@ -15,8 +15,8 @@ use crate::{Pace, Pilot, PlanPosition, RobotSettings, RunTerms};
 /// The supervisor runs on the thread that drives the robot: a real robot waits for it.
 pub trait Supervisor<B: Pilot> {
     /// Returns the input that the robot is sent instead of `asked`, the plan's input of the turn with output `y` at
-    /// time `t`. Every input is passed to this function, including the null inputs of a turn that is cut and of the
-    /// end; only the input before the first output is not.
+    /// time `t`. Every input is passed to this function except the input before the first output; the null inputs of a
+    /// turn that is cut and of the end are passed as well.
     fn filter(&mut self, asked: PilotInput<B>, _y: &PilotOutput<B>, _t: Nanos) -> PilotInput<B> {
         asked
     }

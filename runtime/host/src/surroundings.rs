@@ -26,7 +26,7 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) out: O,
     /// Standard error.
     pub(crate) err: &'e mut dyn Write,
-    /// Clock of the line that shows that a fast run goes on, if standard error is a terminal.
+    /// Clock of the progress line of a fast run; `None` if standard error is not a terminal.
     pub(crate) elapsed: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
@@ -36,7 +36,7 @@ pub(crate) struct Settings<'a> {
     pub(crate) program: Program<'a>,
     /// Words by which the program was called.
     pub(crate) call: &'a Call,
-    /// All options, among them those of the target.
+    /// All options, including the target's own options.
     pub(crate) matches: &'a ArgMatches,
     /// Options that all targets have.
     pub(crate) options: &'a Options,
@@ -53,7 +53,7 @@ impl Settings<'_> {
 pub(crate) struct PlanData {
     /// Paths that the plan replays.
     pub(crate) store: PathStore,
-    /// Names of these paths.
+    /// Names of the paths in `store`.
     pub(crate) paths: Vec<&'static str>,
     /// Causes by which the plan must end.
     pub(crate) required: Required,

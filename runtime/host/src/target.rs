@@ -37,7 +37,7 @@ pub trait Target {
     /// clock.
     ///
     /// # Errors
-    /// Returns a sentence for the operator about an invalid option.
+    /// Returns a message for the operator if an option is invalid.
     fn time(_matches: &ArgMatches) -> Result<Time, String> {
         Ok(Time::Wall)
     }
@@ -47,7 +47,7 @@ pub trait Target {
     /// capabilities of its alphabet needs no check.
     ///
     /// # Errors
-    /// Returns a sentence with the quark and the setting that it needs (exit status 2).
+    /// Returns a message with the quark and the setting that it needs, if the robot lacks a capability (exit status 2).
     fn accepts(_matches: &ArgMatches, _texts: &[&str]) -> Result<(), Refusal> {
         Ok(())
     }
@@ -55,8 +55,8 @@ pub trait Target {
     /// Opens the robot, which does not move yet.
     ///
     /// From this call on, signals no longer end the program, but make `request`. A robot that opens at once can ignore
-    /// it: the host stops the robot before its first turn. A robot that takes longer checks `request` between its
-    /// steps; when it is made, the robot stops and returns [`Refusal::Ended`].
+    /// `request`: the host stops the robot before its first turn. A robot that takes longer checks `request` between
+    /// its steps; when the request is made, the robot stops and returns [`Refusal::Ended`].
     ///
     /// # Errors
     /// Fails if an option is invalid (exit status 2), if a fault has occurred (exit status 3), or if `request` was
@@ -72,7 +72,7 @@ pub trait Target {
     /// Returns the text to print instead of a run, if the options request information that needs no run.
     ///
     /// # Errors
-    /// Returns the reason why there is no answer: an invalid option (exit status 2).
+    /// Fails if an option is invalid (exit status 2).
     fn answer(_matches: &ArgMatches) -> Result<Option<String>, Refusal> {
         Ok(None)
     }

@@ -20,7 +20,7 @@ pub(crate) struct TargetOptions {
     pub(crate) accepts: fn(&ArgMatches, &[&str]) -> Result<(), Refusal>,
     /// Maximum speeds of a path; `None` if the target replays no paths.
     pub(crate) fastest: Option<Twist>,
-    /// `true` if a record can hold the robot's outputs and inputs.
+    /// `true` if a record can contain the robot's outputs and inputs.
     pub(crate) records: bool,
     /// `true` if the robot's outputs contain the odometry that views of a run show.
     pub(crate) has_odometry: bool,

@@ -1,5 +1,5 @@
-//! Tests of whole runs on a toy robot in virtual time: the robot's inputs, the output, and the exit status, on every
-//! way out.
+//! Tests whole runs on a toy robot in virtual time, for every kind of end: the robot's inputs, the output, and the exit
+//! status.
 
 mod ends;
 mod limits;

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-/// Upper bounds of all classes but the last, in nanoseconds.
+/// Upper bounds, in nanoseconds, of all histogram classes but the last.
 const BOUNDS: [u64; 19] = {
     let mut bounds = [0; 19];
     let (mut class, mut decade) = (0, 10_000);
@@ -59,7 +59,7 @@ impl Timing {
     /// Records a turn that took `nanos` nanoseconds.
     ///
     /// # Errors
-    /// Returns a sentence for the operator if this turn and the turns before it were too long.
+    /// Returns a message for the operator if this turn and the turns before it were too long.
     pub(crate) fn took(&mut self, nanos: u64) -> Result<(), String> {
         self.took.add(nanos);
         if nanos <= self.period {

@@ -35,7 +35,7 @@ impl<R> Trials<R> {
     /// Returns the robot for a seed before its first exchange; without a seed the robot has no random errors.
     ///
     /// # Errors
-    /// Returns a sentence if the robot cannot be created.
+    /// Returns a message if the robot cannot be created.
     pub fn robot(&self, seed: Option<u64>) -> Result<R, String> {
         (self.robot)(seed)
     }
@@ -45,7 +45,7 @@ impl<R> Trials<R> {
 /// names.
 ///
 /// # Errors
-/// Returns a sentence if an option, a world or a path is invalid, or if the target's robots cannot be started over.
+/// Returns a message if an option, a world or a path is invalid, or if the target's robots cannot be started over.
 pub fn trials<T: Target>(
     program: Program<'_>,
     call: &Call,

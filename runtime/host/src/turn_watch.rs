@@ -16,13 +16,13 @@ use crate::run_end;
 
 /// Time between two checks of the turns.
 const LOOK: Duration = Duration::from_millis(100);
-/// Maximum number of checks that find the same turn, after which the program ends. Checks are counted instead of time,
-/// because a suspended computer makes no checks.
+/// Number of checks that find the same turn, after which the program ends. Checks are counted instead of time, because
+/// a suspended computer makes no checks.
 const LOOKS: u32 = 100;
-/// Time before the program ends, in which its writers can write the text that they have already received.
+/// Time before the program ends, in which its writers can finish text that they have already received.
 const LAST_LINES: Duration = Duration::from_millis(300);
 
-/// Runs of a program, whose turns another thread watches.
+/// Runs of a program whose turns are watched by another thread.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TurnWatch(Arc<Mutex<Vec<Entry>>>);
 
@@ -51,8 +51,8 @@ thread_local! {
     static WORK: RefCell<Option<Work>> = const { RefCell::new(None) };
 }
 
-/// Notes the module whose code this thread runs from now on, or that it runs other code. The report of a turn that
-/// never ends names the module. Without effect on a thread that makes no turn.
+/// Records which module's code this thread runs from now on; `None` means other code. The report of a turn that never
+/// ends names the module. The function has no effect on a thread that makes no turn.
 pub fn at_work(module: Option<&Arc<str>>) {
     WORK.with_borrow(|work| {
         if let Some(work) = work {
@@ -73,7 +73,7 @@ struct Hung {
 }
 
 impl TurnWatch {
-    /// Starts watching the turns of this program. A turn that hangs ends the program with a sentence on standard error
+    /// Starts watching the turns of this program. A turn that hangs ends the program with a message on standard error
     /// and exit status 3; `leave_screen` restores the terminal.
     ///
     /// # Errors
@@ -89,11 +89,11 @@ impl TurnWatch {
                 }
             };
             leave_screen();
-            // The line that shows that a fast run goes on has no end.
+            // The progress line of a fast run has no line break at its end.
             let line = if io::stderr().is_terminal() { "\n" } else { "" };
             err.tell(format!("{line}{}\n", hung.sentence()));
             thread::sleep(LAST_LINES);
-            // Not by way of what the libraries do at an exit: the thread that hangs may hold what they need.
+            // Skips the exit handlers of the libraries: the thread that hangs may hold locks that they need.
             low_level::exit(run_end::FAULT.into());
         };
         Builder::new().name("turn watch".to_owned()).stack_size(STACK).spawn(look)?;
@@ -149,7 +149,7 @@ impl WatchedRun {
 }
 
 impl Hung {
-    /// Returns the sentence about the turn for the operator.
+    /// Returns the message about the turn for the operator.
     fn sentence(&self) -> String {
         let Self { turn, module, is_real } = self;
         let came = if *is_real {

@@ -69,7 +69,7 @@ struct OnePlan<'t, 'a, 'o> {
     limit: &'t WatchedRun,
     /// Transitions of the last turn.
     transitions: Transitions,
-    /// `true` if the current atom was entered after a law was last applied.
+    /// `true` if no law has been applied since the current atom was entered.
     fresh: bool,
     /// Number of the current plan, from 1; a supervisor may replace the plan.
     plan: u64,
@@ -214,7 +214,7 @@ fn cause(ending: &RunEnd, report: &Report<'_>) -> String {
     }
 }
 
-/// Informs the observer that the turns have ended, with the cause.
+/// Informs the observer that the turns have ended, and about the cause.
 fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &RunEnd, report: &Report<'_>, t: Nanos) {
     let by = cause(ending, report);
     observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == RunEnd::Over, by: &by, t });

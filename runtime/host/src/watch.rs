@@ -54,7 +54,7 @@ impl Watch {
     /// screen at the first turn.
     ///
     /// # Errors
-    /// Returns a sentence if standard output is not a terminal.
+    /// Returns a message if standard output is not a terminal.
     pub fn of(matches: &ArgMatches, world: &World) -> Result<Option<Self>, String> {
         if !is_asked_for(matches) {
             return Ok(None);

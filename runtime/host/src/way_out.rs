@@ -20,7 +20,7 @@ pub(crate) fn bug(Panicked(message): Panicked) -> RunEnd {
 /// Stops the robot. Returns the end of the run after the stop, `true` if the robot's code can still be relied on, and
 /// the faults.
 ///
-/// The null input is sent once more if the robot still accepts inputs; the stop command is sent in any case.
+/// The null input is sent once more if the robot still accepts inputs; the stop command is always sent.
 pub(crate) fn stop(drive: &mut dyn Drive, ending: RunEnd) -> (RunEnd, bool, Vec<RunFault>) {
     let last = if ending.robot_listens() {
         let last = shielded(|| drive.release().map_err(RunEnd::Robot));
@@ -45,8 +45,9 @@ pub(crate) fn stop(drive: &mut dyn Drive, ending: RunEnd) -> (RunEnd, bool, Vec<
     (ending, orderly, faults)
 }
 
-/// Returns [`RunEnd::Over`] for a plan that ended as the options and the robot's goal require, and a
-/// [`RunEnd::Otherwise`] if it ended otherwise; other ends stay as they are. Reports the result of a goal.
+/// Returns [`RunEnd::Over`] if the plan ended as the options and the robot's goal require, and [`RunEnd::Otherwise`] if
+/// it ended in another way. Returns the end of a run unchanged if its plan did not end. If the robot has a goal,
+/// reports its result.
 pub(crate) fn judge(drive: &mut dyn Drive, ending: RunEnd, required: &Required, report: &mut Report<'_>) -> RunEnd {
     if ending != RunEnd::Over {
         return ending;
@@ -73,7 +74,7 @@ pub(crate) fn judge(drive: &mut dyn Drive, ending: RunEnd, required: &Required, 
 /// Files that a run writes at its end.
 pub(crate) struct Files {
     pub(crate) log: Option<RunLog>,
-    /// Error because of which the path could not be written.
+    /// Error that prevented the path from being written.
     pub(crate) path: Option<io::Error>,
     /// The views by odometry.
     pub(crate) views: Option<ByOdometry>,
@@ -90,7 +91,7 @@ pub(crate) fn tell(
     err: &mut dyn Write,
 ) -> u8 {
     let is_stopped = !faults.iter().any(|fault| matches!(fault, RunFault::Stop(_)));
-    // Without a word on a broken log the reader of a short one would take it for a whole run.
+    // A broken log is reported, because a reader would take a short log for a complete run.
     let (logged, ended_before) = match files.log {
         Some(mut log) => (log.close(), log.take_message()),
         None => (Ok(()), None),
@@ -98,7 +99,7 @@ pub(crate) fn tell(
     faults.extend(logged.err().filter(|_| !matches!(ending, RunEnd::Log(_))).map(RunFault::Log));
     faults.extend(files.path.map(RunFault::Path));
     report.flush();
-    // Before the robot finishes, which may take a while.
+    // Reported before the robot writes its files, which may take a while.
     ending.tell(is_stopped, err);
     if orderly {
         let finished = shielded(|| drive.observer().map_or(Ok(()), |observer| observer.finish()));

@@ -20,13 +20,13 @@ impl WholeFile {
     /// leaves no file.
     ///
     /// # Errors
-    /// Returns a sentence for the user if the file cannot be written.
+    /// Returns a message for the user if the file cannot be written.
     pub fn at(option: &str, path: &Path) -> Result<Self, String> {
         let shown = path.display();
         if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
             return Err(format!("--{option} {shown}: that is a folder; name a file in it"));
         }
-        // Through a link, or the rename would replace the link.
+        // Resolves a symbolic link, because the rename would replace the link.
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         match fs::metadata(&path) {
             Ok(found) if found.is_dir() => {
@@ -45,7 +45,7 @@ impl WholeFile {
         unfinished.push(name);
         unfinished.push(format!(".{}.tmp", std::process::id()));
         let unfinished = path.with_file_name(unfinished);
-        // Never through a link that somebody has put there.
+        // `create_new` never follows a link that another user has put there.
         let tried = File::create_new(&unfinished).and_then(|_| fs::remove_file(&unfinished));
         tried.map_err(|error| {
             if error.kind() == ErrorKind::NotFound {
@@ -60,7 +60,7 @@ impl WholeFile {
     /// Writes the file; error messages call it `what`.
     ///
     /// # Errors
-    /// Returns a sentence for the user if the file cannot be written.
+    /// Returns a message for the user if the file cannot be written.
     pub fn write(&self, what: &str, text: &str) -> Result<(), String> {
         let mut unfinished = Unfinished::new(self.clone());
         unfinished.write(text);
@@ -89,7 +89,7 @@ impl<W: Write> Unfinished<W> {
     /// Begins writing the file through the writer that `writer` returns.
     pub(crate) fn through(file: WholeFile, writer: impl FnOnce(File) -> io::Result<W>) -> Self {
         let opened = File::create_new(&file.unfinished);
-        // What is there already is not this program's to remove.
+        // An existing file does not belong to this program, and is not removed.
         let is_finished = opened.is_err();
         Self { file, written: opened.and_then(writer), is_finished }
     }
@@ -106,7 +106,7 @@ impl<W: Write> Unfinished<W> {
     /// Completes the file and moves it to its path; error messages call it `what`.
     ///
     /// # Errors
-    /// Returns a sentence for the user if the file cannot be written.
+    /// Returns a message for the user if the file cannot be written.
     pub fn finish(mut self, what: &str) -> Result<(), String> {
         let written = std::mem::replace(&mut self.written, Err(ErrorKind::Other.into()));
         let put = written.and_then(|mut file| file.flush());
@@ -119,8 +119,8 @@ impl<W: Write> Unfinished<W> {
 impl<W: Write> Drop for Unfinished<W> {
     fn drop(&mut self) {
         if !self.is_finished {
-            // What could not be finished is not left lying about; if that fails too, the first error is the one to
-            // tell.
+            // Removes the unfinished file. An error of the removal is ignored, because the first error is the one to
+            // report.
             let _ = fs::remove_file(&self.file.unfinished);
         }
     }

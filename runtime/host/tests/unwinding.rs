@@ -1,4 +1,4 @@
-//! Tests that an executable in which panics abort does not compile, because a panic would not stop the robot.
+//! Tests that an executable in which a panic aborts does not compile, because the robot would not be stopped.
 #![allow(clippy::unwrap_used, reason = "what fails here is the test")]
 
 use std::process::Command;

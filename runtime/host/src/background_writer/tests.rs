@@ -1,4 +1,4 @@
-//! Tests with readers that are slow, that have closed the stream, and that read nothing.
+//! Tests with readers that are slow, have closed the stream, or read nothing.
 
 use std::io::{Read, pipe};
 
@@ -70,7 +70,7 @@ fn a_reader_that_takes_nothing_is_given_up_after_the_stop() {
     let begun = Instant::now();
     assert_eq!(outlet.flush().unwrap_err().to_string(), "it was not read for 2 s");
     assert!(begun.elapsed() >= AT_THE_END);
-    // It has had its time.
+    // The outlet has already waited for its maximum time, and does not wait again.
     outlet.write_all(b"more").unwrap();
     assert_eq!(outlet.flush().unwrap_err().kind(), io::ErrorKind::TimedOut);
     drop(outlet);

@@ -1,4 +1,4 @@
-//! Tests of the clock in a time that each test advances by hand.
+//! Tests the clock with a time that each test advances by hand.
 
 use super::*;
 use crate::signals::Signal;
@@ -117,7 +117,7 @@ fn a_robot_that_went_without_a_command_for_too_long_is_not_driven_on() {
     assert_eq!([900, 1000].map(|took| gap(&mut clock, took)), [Ok(()), Ok(())]);
     let Err(RunEnd::Suspended { gap: 1_100_000_000, longest }) = gap(&mut clock, 1001) else { panic!("a fault") };
     assert_eq!(longest, nanos(second));
-    // Of a robot that does not say.
+    // Clock of a robot that gives no maximum time without a command.
     let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, None);
     assert_eq!(gap(&mut clock, 2100), Ok(()));
     assert!(gap(&mut clock, 2101).is_err());

@@ -9,10 +9,10 @@ use crate::background_writer::Outlet;
 /// A path that is being recorded.
 pub(crate) struct Recorder<W: Write = Outlet> {
     file: W,
-    /// Heading by odometry in the first row; `None` before it.
+    /// Heading by odometry in the first row; `None` before the first row.
     begun: Option<Radians>,
-    /// Result of writing. After an error nothing more is written, and the error is reported at the end: it is not a
-    /// reason for stopping a robot.
+    /// Result of writing. After an error nothing more is written, and the error is reported at the end, because it is
+    /// no reason for stopping a robot.
     written: io::Result<()>,
 }
 

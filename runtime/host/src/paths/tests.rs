@@ -1,4 +1,4 @@
-//! Tests of the error messages for files without a valid path, and of paths that are recorded and read again.
+//! Tests the error messages for files without a valid path, and the round trip of recorded paths.
 
 use std::fmt::Write as _;
 

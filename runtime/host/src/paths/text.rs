@@ -71,7 +71,7 @@ pub(super) fn utf8(bytes: &[u8]) -> Result<&str, TextFault> {
 /// Returns the setpoints in `text`, for a robot with the maximum speeds `fastest`. The first setpoint is at time 0, and
 /// each other setpoint is later than the previous one.
 pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, TextFault> {
-    // Spreadsheets like to put it in front.
+    // Some spreadsheets begin a file with a byte order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let rows = text.lines().map(|line| line.split_once('#').map_or(line, |(row, _)| row));
     let mut lines = (1..).zip(rows).filter(|(_, row)| !row.trim().is_empty());
@@ -93,7 +93,7 @@ fn cells(line: usize, text: &str) -> Vec<Cell<'_>> {
     let mut column = 1;
     let cells = text.split(',').map(|cell| {
         let blanks = cell.chars().take_while(|blank| blank.is_whitespace()).count();
-        // What is not there is missed where the next comma is.
+        // An empty cell is reported at its start.
         let place = (line, column + if cell.trim().is_empty() { 0 } else { blanks });
         column += cell.chars().count() + 1;
         Cell { place, text: cell.trim() }
@@ -176,12 +176,12 @@ impl Rows {
         Ok(())
     }
 
-    /// Returns the time of the next setpoint, `nanos` nanoseconds after the first.
+    /// Checks and returns the time of the next setpoint, `nanos` nanoseconds after the first.
     fn time(&self, cell: &Cell<'_>, nanos: f64) -> Result<Nanos, TextFault> {
         if nanos > LATEST {
             return Err(cell.wrong(format!("no path is as long as {}", self.shown(cell))));
         }
-        // What is negative becomes 0, and is told below.
+        // A negative time becomes 0 here, and is reported below.
         let at = Nanos(nanos.round() as u64);
         match self.setpoints.last() {
             None if nanos != 0.0 => {

@@ -1,4 +1,4 @@
-//! Tests of the end of a run: the causes of `--require`, the robot's goal, and the exit status.
+//! Tests the end of a run: the causes of `--require`, the robot's goal, and the exit status.
 
 use mdle_runtime::Cause::{Completed, Fired};
 

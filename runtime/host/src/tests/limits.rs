@@ -1,4 +1,4 @@
-//! Tests of options: help, invalid options, period, timeout and turn limit.
+//! Tests options: help, invalid options, period, timeout and turn limit.
 
 use std::time::Duration;
 

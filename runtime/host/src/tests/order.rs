@@ -1,4 +1,4 @@
-//! Tests of the inputs that a robot gets, and of their order, on every way out.
+//! Tests the inputs that a robot receives, and their order, for every kind of end.
 
 use mdle_runtime::Cause::{Completed, Fired};
 
@@ -227,7 +227,7 @@ fn a_robot_that_cannot_be_opened_is_sent_nothing() {
 #[test]
 fn a_signal_at_the_start_stops_the_robot() {
     let interrupted = |refusal| Stage { interrupted: Some(Signal::INTERRUPT), refusal, ..Stage::default() };
-    // A robot that does not look at the request.
+    // A robot that ignores the stop request.
     insta::assert_snapshot!(way_out(&interrupted(None).run(&[])), @"
     exchange 0, stop, finish
     status 130

@@ -1,4 +1,4 @@
-//! Tests of a run's output: the lines on standard output and the run log.
+//! Tests a run's output: the lines on standard output and the run log.
 
 use std::io::{self, Write};
 use std::path::PathBuf;

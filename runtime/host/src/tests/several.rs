@@ -1,5 +1,4 @@
-//! Tests of several runs: their report, which is equal for any number of threads, and the runs that remain after a
-//! signal.
+//! Tests several runs: their report, which is equal for any number of threads, and the report after a signal.
 
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::time::Duration;
@@ -19,7 +18,7 @@ use crate::signals::{Signal, Signals};
 use crate::turn_watch::TurnWatch;
 use crate::{Batch, Judgement, Observer};
 
-/// A robot whose run depends on its seed: the plan's outermost interrupt fires in turn `seed`, if ever.
+/// A robot whose run depends on its seed: the plan's outermost interrupt fires in turn `seed`, or never.
 struct Seeded {
     seed: u64,
     exchanges: u64,
@@ -184,7 +183,7 @@ fn the_number_of_threads_changes_nothing() {
 #[test]
 fn a_signal_ends_the_batch_with_a_summary() {
     let signals = Signals::unheard();
-    // Listens, as a process does.
+    // This record can receive the signal that one of the runs raises.
     let (status, summary) = Several { runs: 50, ..FIVE }.run(&signals);
     assert_eq!(status, 130);
     assert!(summary.starts_with("3 of 50 runs, seeds 1 to 50: 1 arrived, 1 bumped, 1 astray\n"), "{summary}");

@@ -1,5 +1,4 @@
-//! Tests of supervisors: the inputs that are passed to them, the breaks at which they are called, and how they end a
-//! run.
+//! Tests supervisors: the inputs that are passed to them, the breaks at which they are called, and how they end a run.
 
 use mdle_runtime::Cause::Fired;
 use mdle_runtime::Nanos;

@@ -25,7 +25,7 @@ use crate::{
     Supervisor, Target, Time,
 };
 
-/// An output: for each atom, numbered as written, the cause by which a scope ends while the atom is the current one.
+/// An output: for each atom, numbered as written, the cause by which a scope ends while the atom is current.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sensed(pub(super) Vec<(u32, Cause)>);
 
@@ -149,7 +149,7 @@ impl Stage {
             elapsed: None,
         };
         let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
-        // The pilot lives as long as the program does.
+        // The pilot needs a plan that lives as long as the program.
         let plan = self.plan;
         let plan: &'static (dyn Fn() -> ToyPlan + Sync) = Box::leak(Box::new(move || plan.clone()));
         let make = |terms: &RunTerms| (self.supervisor.expect("a supervisor"))(terms);
@@ -160,7 +160,7 @@ impl Stage {
         let pilot = |_: &RunTerms| Ok(PlanAlone::new(plan));
         let executable = PlanOnTarget::<ToyTarget, _, _>::new(plan, &pilot).supervised(supervision);
         let status = session("Lab".into(), Call::of_executable(arguments), &executable, surroundings);
-        // Otherwise a program may end before its last message is written.
+        // If readers were not waited for, a program could end before its last message is written.
         assert_ne!(patience.limit(), Some(Duration::ZERO), "readers are not waited for at the end");
         let text = out.borrow().text();
         let journal = journal.borrow().join(", ");
@@ -297,7 +297,7 @@ impl Observer for Toy {
     }
 
     fn ended(&mut self, ended: &Ended<'_>) {
-        // Of all runs, those in which it looks say enough of it.
+        // Noted only if the robot follows the plan's state: these runs test it sufficiently.
         if self.looks {
             let Ended { plan, is_over, by, t } = ended;
             let how = if *is_over { "over" } else { "stopped" };

@@ -38,7 +38,7 @@ impl ByOdometry {
     /// Returns the views of a run on the robot with this name.
     ///
     /// # Errors
-    /// Returns a sentence if the options request the live view and standard output is not a terminal.
+    /// Returns a message if the options request the live view and standard output is not a terminal.
     pub(crate) fn new(
         robot: &str,
         matches: &ArgMatches,

@@ -1,4 +1,4 @@
-//! Draws a picture of dots with characters of a terminal: each character has two by four dots and one colour.
+//! Draws a picture of dots with the characters of a terminal: each character has two by four dots and one colour.
 
 /// Colour of a character; a later variant covers an earlier one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -45,7 +45,7 @@ impl Canvas {
         if x >= 2 * self.columns || y >= 4 * self.rows {
             return;
         }
-        // Of Unicode's Braille patterns: three dots down on each side, then the fourth.
+        // Bit order of Unicode's Braille patterns: three dots downwards in each column, then the fourth dot of each.
         let bit = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]][y % 4][x % 2];
         let Some(letter) = self.letters.get_mut(y / 4 * self.columns + x / 2) else { return };
         letter.0 |= bit;

@@ -40,7 +40,7 @@ impl Map {
         let ((left, right), (low, high)) = (range(|place| place.x), range(|place| place.y));
         let (wide, tall) = (2.0 * columns as f64, 4.0 * rows as f64);
         let scale = (wide / (right - left)).min(tall / (high - low));
-        // In the middle.
+        // Centres the drawing.
         let corner = Place { x: (left + right) / 2.0 - wide / scale / 2.0, y: (low + high) / 2.0 + tall / scale / 2.0 };
         let mut map = Self { canvas: Canvas::new(columns, rows), corner, scale, way_count: 0, echo_count: 0 };
         match world.goal.map(|goal| goal.zone) {
@@ -115,7 +115,7 @@ impl Map {
         self.body(robot);
         let eighths = libm::round(pose.theta.degrees() / 45.0) as i64;
         let arrow = usize::try_from(eighths.rem_euclid(8)).ok().and_then(|eighth| ARROWS.get(eighth)).unwrap_or(&'?');
-        // Red where it touches something.
+        // Red if the robot touches an obstacle.
         let sign = format!("\x1b[0;1;97;{}m{arrow}", if touches { 41 } else { 44 });
         let (x, y) = self.at(Place::of(pose));
         self.canvas.text(Some((((x / 2.0).max(0.0) as usize, (y / 4.0).max(0.0) as usize), &sign)))
@@ -187,7 +187,7 @@ mod tests {
         assert!(map.shows(Place::of(&pose)) && map.is_of(columns, rows));
         map.draw_current_echoes(&[Place { x: 0.0, y: 8.0 }]);
         let text = map.rows(&Footprint { pose, form: Form::Disc { radius: 0.205 } }, false).join("\n");
-        // Colours aside.
+        // Removes the colour codes.
         let mut plain = text.split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, rest)| rest));
         plain.by_ref().collect()
     }

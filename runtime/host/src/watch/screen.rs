@@ -1,4 +1,5 @@
-//! The alternate screen of a terminal, whose settings are restored in every case.
+//! The alternate screen of a terminal. The terminal's settings are restored at every orderly end, after a panic, and
+//! when a turn that hangs or a second signal ends the program.
 
 use std::fs::File;
 use std::io::{self, IsTerminal, Write, stdout};
@@ -18,8 +19,8 @@ const ENTER: &str = "\x1b[?1049h\x1b[?25l\x1b[2J";
 /// Codes that restore colours, cursor and screen.
 const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
 
-/// Settings of the terminal before the program switched to the alternate screen, as long as it uses this screen. A
-/// process has one screen, which its panic hook leaves as well.
+/// Settings of the terminal before the program switched to the alternate screen; `None` while the program does not use
+/// this screen. They are global because the panic hook restores the terminal too.
 static SETTINGS: Mutex<Option<SavedSettings>> = Mutex::new(None);
 
 struct SavedSettings(Option<Termios>);
@@ -57,7 +58,8 @@ impl Screen {
     /// Switches to the alternate screen. Keys are not echoed; Ctrl-C still sends its signal.
     pub(super) fn enter() -> Self {
         static HOOK: Once = Once::new();
-        // A panic tells of itself before anything is dropped: on a screen that goes away nobody would read it.
+        // The panic hook runs before values are dropped: without this, its message would disappear with the alternate
+        // screen.
         HOOK.call_once(|| {
             let hook = panic::take_hook();
             panic::set_hook(Box::new(move |panic| {
@@ -78,7 +80,7 @@ impl Screen {
 
     /// Shows `lines` from the top of the screen.
     pub(super) fn show(&mut self, lines: &[String]) {
-        // Shown at once by terminals that know how to; the others do not mind.
+        // Terminals with synchronized updates show the picture at once; all others ignore the code.
         let mut text = "\x1b[?2026h\x1b[H".to_owned();
         for (number, line) in lines.iter().enumerate() {
             text += if number == 0 { "" } else { "\r\n" };
@@ -115,7 +117,7 @@ pub(super) fn leave_at_once() {
 /// Discards pending input, and restores the settings of the terminal.
 fn restore(settings: Option<Termios>) {
     if let Some(settings) = settings {
-        // What was typed meanwhile was meant for nobody.
+        // Keys that were typed during the live view are not meant for the next program.
         let _ = tcflush(stdout(), QueueSelector::IFlush);
         let _ = tcsetattr(stdout(), OptionalActions::Now, &settings);
     }
@@ -141,7 +143,8 @@ impl Terminal {
                 Ok(count) => drop(self.left.drain(..count)),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) if error.kind() == io::ErrorKind::WouldBlock => return false,
-                // A terminal that is gone is not a reason to stop a robot; its own signal says so.
+                // A closed terminal is reported by its own signal, SIGHUP; the write error is no reason to stop a
+                // robot.
                 Err(_) => self.left.clear(),
             }
         }
@@ -164,7 +167,7 @@ fn write(text: &str) {
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
-/// Writes `text` after the rest, within the maximum time for restoring the terminal.
+/// Writes the rest and then `text`, within the maximum time for restoring the terminal.
 fn write_to_the_end(text: &str) {
     let mut terminal = terminal();
     let Some(terminal) = terminal.as_mut() else {

@@ -4,8 +4,8 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::{Arc, Once};
 
-/// Restores the default effect of SIGHUP in the programs that this program starts, also under `nohup`, which makes all
-/// of them ignore the signal: a signal that a program catches has its default effect in the programs that it starts.
+/// Catches SIGHUP, so that the programs that this program starts have the signal's default effect: under `nohup`, they
+/// would ignore the signal.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {

@@ -1,4 +1,4 @@
-//! Tests of the example `cart` as a program: real signals, closed and blocked pipes, exit statuses, panics.
+//! Tests the example `cart` as a program: real signals, closed and blocked pipes, exit statuses, panics.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is the test")]
 
 mod cart;

@@ -1,4 +1,4 @@
-//! Tests of signals: each signal ends the run, and a second signal ends a program that hangs.
+//! Tests signals: each signal ends the run, and a second signal ends a program that hangs.
 
 use std::process::{Child, Command, Stdio};
 use std::sync::{Arc, Mutex};
@@ -10,7 +10,7 @@ use nix::sys::signal::{SigSet, SigmaskHow};
 use crate::cart::{FAR, cart, is_no_timing, lines, send, start, wait_until_it_moves};
 
 /// The signals that end a program by default and can be caught, without SIGUSR1, SIGPIPE and SIGXFSZ, and two real-time
-/// ones.
+/// signals.
 const ENDING: [(u8, &str); 18] = [
     (1, "SIGHUP"),
     (2, "SIGINT"),
@@ -97,7 +97,7 @@ fn a_cart_that_was_suspended_is_not_driven_on() {
     assert_eq!(child.wait().unwrap().code(), Some(3));
     reading.join().unwrap();
     let seen = seen.lock().unwrap();
-    // The signal may have come just before a command was sent.
+    // The signal may have arrived just before a command was sent.
     let after: Vec<_> = seen[before..].iter().skip_while(|line| *line == "cart: 0.5 m/s").collect();
     assert!(seen.len() - before - after.len() <= 1, "{seen:?}");
     assert_eq!(after[0], "cart: stop");
@@ -160,7 +160,7 @@ fn a_signal_that_was_ignored_before_stays_ignored() {
 #[test]
 fn a_signal_that_was_blocked_before_ends_the_run() {
     for (number, name) in ENDING {
-        // A program inherits the mask of the thread that starts it.
+        // A program inherits the signal mask of the thread that starts it.
         let start = || {
             let mask = SigSet::all().thread_swap_mask(SigmaskHow::SIG_BLOCK).unwrap();
             let child = start(&FAR);

@@ -1,4 +1,4 @@
-//! Tests of all writers of a run, whose readers are blocked or closed, or whose files are full or limited: the robot
+//! Tests all writers of a run, with readers that are blocked or closed and files that are full or limited: the robot
 //! drives on or stops, and waits for no reader.
 
 use std::fs::{self, File};
@@ -13,7 +13,7 @@ use rustix::fs::{CWD, FileType, Mode, OFlags, fcntl_getfl, fcntl_setfl, mknodat}
 
 use crate::cart::{cart, is_no_timing, lines, send, start};
 
-/// The output that is written to.
+/// Output of the cart that a test obstructs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Writer {
     Out,
@@ -70,7 +70,7 @@ impl Cart {
     fn blocked(&mut self, writer: Writer) {
         let fifo = self.folder.join(format!("{writer:?}"));
         self::fifo(&fifo);
-        // Open for both, it waits for nobody.
+        // A pipe that is opened for reading and writing does not wait for another end.
         let mut end = File::options().read(true).write(true).open(&fifo).unwrap();
         let flags = fcntl_getfl(&end).unwrap();
         fcntl_setfl(&end, flags | OFlags::NONBLOCK).unwrap();
@@ -105,9 +105,9 @@ impl Cart {
         self.command = shell;
     }
 
-    /// Reads the commands that the cart has reported, and returns all of them.
+    /// Reads the commands that the cart has newly reported, and returns all commands so far.
     fn hear(&mut self) -> &str {
-        // There is nothing, or the cart has not opened it, or has ended.
+        // Errors are ignored: there are no new data, the cart has not opened the pipe yet, or it has ended.
         let _ = self.journal.read_to_string(&mut self.text);
         &self.text
     }
@@ -127,15 +127,15 @@ impl Cart {
         }
     }
 
-    /// Waits for the cart's end; returns the status, and `true` if the cart was stopped.
+    /// Waits until the cart ends; returns the exit status, and `true` if the cart was stopped.
     fn end(&mut self, child: &mut Child) -> (Option<i32>, bool) {
         let status = child.wait().unwrap().code();
         (status, self.hear().ends_with("stop\n"))
     }
 }
 
-/// Requests the timing of a driving cart, and then stops the cart by a signal; returns the status, and `true` if the
-/// cart was stopped.
+/// Requests the timing of a driving cart, and then stops the cart by a signal; returns the exit status, and `true` if
+/// the cart was stopped.
 fn stopped(mut cart: Cart) -> (Option<i32>, bool) {
     let mut child = cart.moves(10);
     send(&child, "USR1");
@@ -157,7 +157,7 @@ fn readers_that_do_not_read_hold_up_no_robot() {
 fn blocked_writers_hold_up_no_robot() {
     let writers = WRITERS.map(|writer| vec![writer]).into_iter().chain([WRITERS.to_vec()]);
     thread::scope(|scope| {
-        // A log or a path that lacks its end is a fault.
+        // An incomplete log or path is a fault.
         for (writers, status) in writers.zip([143, 143, 3, 143, 3]) {
             scope.spawn(move || {
                 let mut cart = Cart::new(&format!("blocked_{}", writers.len() * 10 + writers[0] as usize), &[]);
@@ -188,7 +188,7 @@ fn a_writer_that_is_closed_full_or_limited_is_no_reason_to_drive_on() {
 fn assert_stops_when_full(writer: Writer, status: i32) {
     let mut cart = Cart::new(&format!("full_{writer:?}"), &[]);
     cart.to(writer, Path::new("/dev/full"));
-    // A log that cannot be written stops it before the signal does.
+    // A log that cannot be written stops the cart before the signal does.
     if writer == Writer::Log {
         let mut child = cart.command.spawn().unwrap();
         assert_eq!(cart.end(&mut child), (Some(3), true));
@@ -218,12 +218,12 @@ fn a_log_that_nobody_reads_stops_the_robot() {
 }
 
 /// Returns the lines on standard error and the end of a cart whose log or path loses its reader after some turns. A
-/// signal ends the cart, unless `ends_the_run` says that the lost reader does.
+/// signal ends the cart, unless `ends_the_run` is `true`, because the lost reader then ends it.
 fn deserted(writer: Writer, ends_the_run: bool) -> (String, (Option<i32>, bool)) {
     let mut cart = Cart::new(&format!("deserted_{writer:?}"), &[]);
     let pipe = cart.folder.join(format!("{writer:?}"));
     fifo(&pipe);
-    // Opened without waiting for the writer, which opens it only if it has a reader.
+    // Opened without waiting for the writer; the writer can open the pipe only if it has a reader.
     let flags = OFlags::NONBLOCK.bits() as i32;
     let reader = File::options().read(true).custom_flags(flags).open(&pipe).unwrap();
     match writer {
@@ -269,7 +269,8 @@ fn a_panic_needs_no_reader() {
 
 #[test]
 fn a_reader_that_does_not_read_holds_up_no_robot() {
-    // On a track without length each turn makes as many transitions as it may, far more than a pipe holds.
+    // On a track of length zero, each turn makes the maximum number of transitions, whose report is far larger than a
+    // pipe's buffer.
     let mut child = start(&["--tell", "--period", "0.1", "--track", "0"]);
     let mut lines = lines(child.stderr.take().unwrap());
     assert_eq!(lines.by_ref().take(10).filter(|line| line == "cart: 0 m/s").count(), 10);
