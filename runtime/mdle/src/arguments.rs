@@ -1,6 +1,6 @@
 //! The command line of `mdle`.
 //!
-//! The words after the plan are the options of the run, which depend on the target: the host parses them.
+//! Arguments after the plan are options of the run. They depend on the target, and the host parses them.
 
 mod ears;
 mod locate;
@@ -63,7 +63,7 @@ pub(crate) enum Asked {
     Test(Test),
     /// `mdle completions`.
     Completions(Shell),
-    /// `mdle man`, with the words of a command.
+    /// `mdle man`, with the words of the command to describe; empty for `mdle` itself.
     Man(Vec<String>),
 }
 
@@ -80,7 +80,7 @@ pub(crate) struct Run {
     pub(crate) safety: Option<PathBuf>,
     /// File of the link to other robots.
     pub(crate) link: Option<PathBuf>,
-    /// Name of the path that the way back from each `path` and `Follow` replaces; `None` if no path is recorded.
+    /// Name of the path to replace by the way back after each `path` and `Follow`; `None` if no path is recorded.
     pub(crate) records: Option<String>,
     /// Child processes to load as modules: the name of each, and its command line.
     pub(crate) modules: Vec<(String, String)>,
@@ -90,7 +90,7 @@ pub(crate) struct Run {
     pub(crate) ears: Option<EarsOption>,
     /// Radius of the head with the ears, in metres.
     pub(crate) head: f64,
-    /// The map to make; `None` if there is to be none.
+    /// The map to create; `None` if no map is requested.
     pub(crate) map: Option<MapOption>,
     /// `true` if warnings count as errors.
     pub(crate) deny_warnings: bool,
@@ -113,7 +113,7 @@ pub(crate) struct SessionOptions {
     pub(crate) echoes: bool,
     /// Role of the user.
     pub(crate) role: Role,
-    /// `true` if stepped time does not begin before it is resumed.
+    /// `true` if stepped time is paused at the beginning of the run.
     pub(crate) is_paused: bool,
 }
 
@@ -145,7 +145,7 @@ const FLAGS: [&str; 4] = ["--deny-warnings", "-e", "-x", "--paused"];
 /// Parses the arguments of the process, the program's own name first.
 ///
 /// # Errors
-/// Fails if the arguments are wrong, or ask for help.
+/// Fails if the arguments are invalid, or ask for help.
 pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
     let words = match arguments.get(1).and_then(|command| command.to_str()) {
         Some("run" | "shell") => 1,
@@ -214,7 +214,7 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: O
 /// Fails if an option of the run comes before these words, or if an option does not apply to a route.
 fn apart(arguments: Vec<OsString>, mut missing: usize) -> Result<(Vec<OsString>, Vec<OsString>), Failure> {
     let (mut own, mut options) = (Vec::new(), Vec::new());
-    // The program's own name and that of the command.
+    // The names of the program and of the command.
     let (head, mut rest) = arguments.split_at_checked(2).unwrap_or((&arguments, &[]));
     own.extend_from_slice(head);
     while let Some((first, others)) = rest.split_first() {

@@ -1,4 +1,4 @@
-//! The turns of a record, repeated and examined, for explanations, plots and scripts.
+//! Replays a record and examines its turns, for explanations, plots and scripts.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,13 +22,13 @@ use crate::targets;
 /// Exit status if a record does not match its plan.
 const DIFFERS: u8 = 1;
 
-/// A recorded run whose turns are repeated and examined.
+/// A recorded run that is replayed and examined turn by turn.
 pub(crate) struct ExaminedRun {
     run: Box<dyn RecordedRun>,
-    /// `true` if the record does not contain the plan, so that inputs and the texts of transitions have to match the
+    /// `true` if the record does not contain the plan. Inputs and the texts of transitions are then compared with the
     /// record.
     is_compared: bool,
-    /// Text about the safety rule that acts, and about its effect; empty if no rule acts.
+    /// Description of the active safety rule and its effect; empty if no rule is active.
     safety: String,
     /// The guards of the safety rules with their conditions.
     guards: Vec<Guard>,
@@ -48,7 +48,7 @@ pub(crate) struct ExaminedPlan {
     pub(crate) texts: Box<dyn Texts>,
 }
 
-/// A turn of a record that was repeated and examined.
+/// A turn of a record that was replayed and examined.
 #[derive(Debug)]
 pub(crate) struct ExaminedTurn {
     /// The turn as recorded.
@@ -61,7 +61,7 @@ pub(crate) struct ExaminedTurn {
     pub(crate) asked: Twist,
     /// Reason why the plan replaced another plan; empty for the first plan.
     pub(crate) reason: String,
-    /// Text about the safety rule that acts in the turn, and about its effect; empty if no rule acts.
+    /// Description of the safety rule that is active in the turn and its effect; empty if no rule is active.
     pub(crate) safety: String,
     /// Cause of the end of the record, if the record ends with this turn.
     pub(crate) end: Option<String>,
@@ -69,19 +69,19 @@ pub(crate) struct ExaminedTurn {
     pub(crate) next: Option<Nanos>,
 }
 
-/// Reason why the turns of a record cannot be repeated further.
+/// Reason why the replay of a record cannot continue.
 #[derive(Debug)]
 pub(crate) enum Stop {
     /// The record cannot be read.
     Unread(ReadError),
     /// A plan that replaced another plan during the run cannot be compiled.
     Failed(Failure),
-    /// The turn of this number does not match the record: the difference in words.
+    /// A turn does not match the record; contains the number of the turn and the difference in words.
     Differs(u64, String),
 }
 
 impl ExaminedRun {
-    /// Compiles the plan that has run, so that the turns of its record can be repeated.
+    /// Compiles the plan of a record, so that the turns of the record can be replayed.
     ///
     /// # Errors
     /// Fails if the plan cannot be read, has errors, or is not the plan of the record.
@@ -98,7 +98,7 @@ impl ExaminedRun {
         Ok(Self { run, is_compared, safety: String::new(), guards, safety_file, plans, number: 0 })
     }
 
-    /// Makes the next turn; returns `None` at the end of the record.
+    /// Replays the next turn; returns `None` at the end of the record.
     pub(crate) fn turn(&mut self) -> Option<Result<ExaminedTurn, Stop>> {
         let turn = match self.run.turn()? {
             Ok(turn) => turn,
@@ -128,7 +128,7 @@ impl ExaminedRun {
         Some(Ok(ExaminedTurn { recorded, transitions, moments, asked, reason, safety, end, next }))
     }
 
-    /// Returns the text; if it ends with the name of a guard, the guard's condition is appended.
+    /// Returns `text`; if it ends with the name of a guard, the guard's condition is appended.
     fn with_condition(&self, text: String) -> String {
         let rule = text.rsplit(": ").next().unwrap_or_default();
         match self.guards.iter().find(|guard| guard.name == rule) {
@@ -137,8 +137,8 @@ impl ExaminedRun {
         }
     }
 
-    /// Returns the text about the safety rule that replaced the plan in a turn with these messages; empty if no rule
-    /// did.
+    /// Returns the description of the safety rule that replaced the plan in a turn with these messages; empty if no
+    /// rule replaced it.
     fn diversion(&self, messages: &[Message]) -> String {
         let taken = event(messages, "plan").and_then(|text| text.split_once(": ").map(|(_, why)| why.to_owned()));
         taken.map_or_else(String::new, |why| self.with_condition(why))
@@ -176,7 +176,7 @@ impl ExaminedRun {
     }
 }
 
-/// Returns the text of the last event of this kind among the messages of a turn; `None` if there is none.
+/// Returns the text of the last event of the kind `kind` among the messages of a turn; `None` if there is none.
 fn event(messages: &[Message], kind: &str) -> Option<String> {
     let events = messages.iter().rev().filter(|message| message.kind == MessageKind::Event);
     let mut events = events.filter_map(|message| serde_json::from_str::<serde_json::Value>(&message.json).ok());
@@ -184,7 +184,7 @@ fn event(messages: &[Message], kind: &str) -> Option<String> {
     event.get("text")?.as_str().map(str::to_owned)
 }
 
-/// Returns the difference between the texts of transitions and those in the record; `None` if they match.
+/// Compares the texts of a turn's transitions with the record; returns the difference, or `None` if they match.
 fn other_text(plan: &dyn Texts, turn: &ReplayedTurn) -> Option<String> {
     let messages = turn.messages.iter().filter(|message| message.kind == MessageKind::Transition);
     for ((transition, _), message) in turn.transitions.iter().zip(messages) {
@@ -204,7 +204,7 @@ fn other_text(plan: &dyn Texts, turn: &ReplayedTurn) -> Option<String> {
 }
 
 impl Stop {
-    /// Returns the reason as a sentence.
+    /// Returns the reason as a sentence, for a message.
     pub(crate) fn sentence(&self) -> String {
         match self {
             Self::Unread(error) => error.to_string(),
@@ -213,7 +213,7 @@ impl Stop {
         }
     }
 
-    /// Prints the reason why the turns of the record `name` cannot be repeated; returns the exit status. `plan` is the
+    /// Prints the reason why the turns of the record `name` cannot be replayed; returns the exit status. `plan` is the
     /// file of the plan, or `None` for the plan in the record.
     ///
     /// # Errors

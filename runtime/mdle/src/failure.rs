@@ -23,13 +23,13 @@ const USAGE: u8 = 2;
 pub(crate) enum Failure {
     /// The command line is wrong, or asks for help.
     Unparsed(clap::Error),
-    /// Wrong usage, described in a sentence.
+    /// Wrong usage; contains the error message.
     Usage(String),
     /// A plan or a target cannot be read.
     Input(InputError),
     /// The plan has errors, whose diagnostics were printed.
     Plan,
-    /// Sentence about a plan that is not the plan of the record.
+    /// The plan is not the plan of the record; contains the error message.
     OtherPlan(String),
     /// The reader of standard output has closed it, which is not an error.
     Closed,
@@ -50,7 +50,8 @@ impl From<LoadError> for Failure {
 }
 
 impl Failure {
-    /// Returns the failure of a command line, without the tip to write an option after `--`, which never helps.
+    /// Returns the failure for an error of the command line. Removes the tip to write an option after `--`, which never
+    /// helps.
     pub(crate) fn unparsed(mut error: clap::Error) -> Self {
         let is_tip = |tip: &StyledStr| tip.to_string().contains("'-- ");
         let tips = match error.remove(ContextKind::Suggested) {
@@ -72,7 +73,7 @@ impl Failure {
     pub(crate) fn tell_status(self) -> u8 {
         match self {
             Self::Unparsed(answer) => {
-                // Nobody is left to be told when the stream is closed.
+                // If the stream is closed, the message cannot be shown anywhere.
                 let _ = answer.print();
                 if answer.use_stderr() { USAGE } else { 0 }
             }
@@ -146,6 +147,6 @@ pub(crate) fn warning(message: &str) {
 /// Prints diagnostics, in colours on a terminal.
 pub(crate) fn print(sources: &Sources, diagnostics: &[Diagnostic]) {
     let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
-    // Nobody is left to be told when standard error is closed.
+    // If standard error is closed, the message cannot be shown anywhere.
     let _ = sources.write_all(diagnostics, &mut StandardStream::stderr(choice));
 }

@@ -1,7 +1,6 @@
-//! The program `mdle`: it compiles a plan, loads it, and runs it as an executable of `mdlec` would, together
-//! with modules.
+//! The program `mdle`: compiles a plan, loads it, and runs it as an executable of `mdlec` does, together with modules.
 //!
-//! A program with modules of its own calls [`main_with`]; mdlec builds the executables of scenarios by
+//! A program with additional modules calls [`main_with`]; mdlec builds the executables of scenarios with
 //! [`scenario_files`] and [`run_scenario`].
 #![forbid(unsafe_code)]
 
@@ -68,8 +67,8 @@ pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
     main_as(add, None)
 }
 
-/// Runs the command line of this process, as [`main_with`] does. Links between robots may use a router; `open_router`
-/// opens such a link.
+/// Runs the command line of this process, as [`main_with`] does. `open_router` opens links between robots that use a
+/// router.
 #[must_use]
 pub fn main_with_router(add: impl FnOnce(&mut Library<Sensed>), open_router: OpenRouter) -> ExitCode {
     main_as(add, Some(open_router))

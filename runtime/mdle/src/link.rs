@@ -20,11 +20,11 @@ const LARGEST: u64 = 1_000_000;
 /// Permission bits of a file for users other than its owner.
 const OTHERS: u32 = 0o077;
 
-/// Error message about a link file that names a router, in a program that cannot open links by routers.
+/// Error message for a link file that names a router, in a program that cannot open such links.
 const NO_ROUTERS: &str = "this `mdle` has no links by a router\nhelp: the one that `cargo build --release` makes in the folder \
                           `runtime/fleet` of a checkout has them";
 
-/// A link by a router.
+/// Settings of a link through a router.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RouterSettings {
     /// Names and keys.
@@ -35,7 +35,7 @@ pub struct RouterSettings {
     pub file: PathBuf,
 }
 
-/// Function that opens a link by a router. It does not wait until the router can be reached.
+/// Function that opens a link through a router. It does not wait until the router can be reached.
 ///
 /// # Errors
 /// Fails if the system cannot create a thread.
@@ -53,7 +53,7 @@ enum Medium {
 pub(crate) struct LinkFile {
     path: PathBuf,
     medium: Medium,
-    /// Pose at which the robot's odometry begins, in the axes that all robots share.
+    /// Pose at which the robot's odometry begins, in the coordinates that all robots share.
     start: Pose,
     /// Names of the modules whose attributes the robot shares.
     shares: Vec<String>,
@@ -64,7 +64,7 @@ impl LinkFile {
     /// given.
     ///
     /// # Errors
-    /// Fails if the file cannot be read, or is no link file.
+    /// Fails if the file cannot be read, or is not a link file.
     pub(crate) fn read(path: &Path, open_router: Option<OpenRouter>) -> Result<Self, Failure> {
         let name = path.display();
         let unread = |error| Failure::Usage(format!("the file {name} of the link cannot be read: {error}"));
@@ -133,7 +133,7 @@ impl LinkFile {
         self.link().peers.clone()
     }
 
-    /// Returns `true` if the robot accepts plans of another robot.
+    /// Returns `true` if the robot accepts plans from another robot.
     pub(crate) fn takes_plans(&self) -> bool {
         !self.link().plans.is_empty()
     }

@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 
-/// Error message about a link file without an address.
+/// Error message for a link file without an address.
 const NO_ADDRESS: &str = "the address at which the robot listens is missing: write `listen = \"192.168.1.7:7400\"`, or \
                           `router = \"tcp/192.168.1.5:7447\"` for a link by a router";
 
@@ -20,7 +20,7 @@ impl Addresses {
     /// addresses of the other robots.
     ///
     /// # Errors
-    /// Fails with a sentence if an address is missing, invalid or superfluous.
+    /// Fails with a message if an address is missing, invalid or superfluous.
     pub(crate) fn read(
         listen: Option<&str>,
         router: Option<&str>,

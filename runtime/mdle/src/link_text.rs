@@ -33,7 +33,7 @@ struct WrittenLink {
 struct WrittenPeer {
     name: String,
     address: Option<String>,
-    /// Key that only the two robots have, for sending each other plans; `None` if they send none.
+    /// Key that only the two robots know, for plans that they send each other; `None` if they send none.
     plans: Option<String>,
 }
 
@@ -42,7 +42,7 @@ struct WrittenPeer {
 pub(crate) struct LinkText {
     pub(crate) link: LinkSettings,
     pub(crate) addresses: Addresses,
-    /// Pose at which the robot's odometry begins, in the axes that all robots share.
+    /// Pose at which the robot's odometry begins, in the coordinates that all robots share.
     pub(crate) start: Pose,
     /// Names of the modules whose attributes the robot shares.
     pub(crate) shares: Vec<String>,
@@ -54,7 +54,7 @@ impl LinkText {
     /// Reads the text of a file.
     ///
     /// # Errors
-    /// Fails with a sentence if the text is no link file.
+    /// Fails with a message if the text is not a link file.
     pub(crate) fn read(text: &str) -> Result<Self, String> {
         let WrittenLink { name, listen, router, key, start, shares, robot } =
             toml::from_str(text).map_err(|error| refused(text, &error))?;
@@ -78,13 +78,13 @@ impl LinkText {
     }
 }
 
-/// Help text about a command that makes a key that is hard to guess.
+/// Help text with a command that generates a key that is hard to guess.
 const GOOD_KEY: &str = "`openssl rand -hex 16` writes a good one";
 
 /// Checks the names of a robot and of the other robots.
 ///
 /// # Errors
-/// Fails with a sentence if a name is invalid, or if two robots have the same name.
+/// Fails with a message if a name is invalid, or if two robots have the same name.
 fn check_names(own: &str, robots: &[WrittenPeer]) -> Result<(), String> {
     let mut names = BTreeSet::new();
     for name in robots.iter().map(|robot| robot.name.as_str()).chain([own]) {
@@ -98,10 +98,10 @@ fn check_names(own: &str, robots: &[WrittenPeer]) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the name of each robot with which plans are exchanged, and the key that it shares with this robot.
+/// Returns the name of each robot with which plans are exchanged, and the key that this robot shares with it.
 ///
 /// # Errors
-/// Fails with a sentence if a key is empty, or is known to a third robot.
+/// Fails with a message if a key is empty, or is known to a third robot.
 fn plans(robots: &[WrittenPeer], key: &str) -> Result<Vec<(String, String)>, String> {
     let mut plans: Vec<(String, String)> = Vec::new();
     for WrittenPeer { name, plans: own, .. } in robots {
@@ -119,8 +119,8 @@ fn plans(robots: &[WrittenPeer], key: &str) -> Result<Vec<(String, String)>, Str
     Ok(plans)
 }
 
-/// Returns the error message about a text that is no link file. The message quotes nothing from the file, because that
-/// may be a key.
+/// Returns the error message for a text that is not a link file. The message quotes nothing from the file, because a
+/// quotation could reveal a key.
 fn refused(text: &str, error: &toml::de::Error) -> String {
     let before = text.get(..error.span().map_or(0, |span| span.start)).unwrap_or_default();
     let line = before.matches('\n').count() + 1;

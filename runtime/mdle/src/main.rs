@@ -1,4 +1,4 @@
-//! `mdle`, which runs plans without building them.
+//! The program `mdle`, which runs plans without building executables.
 
 use std::process::ExitCode;
 

@@ -28,7 +28,7 @@ pub(crate) fn man(words: &[String]) -> Result<ExitCode, Failure> {
     print(&text)
 }
 
-/// Returns the subcommand of this name.
+/// Returns the subcommand `name` of `command`.
 fn subcommand<'c>(command: &'c Command, name: &str) -> Result<&'c Command, Failure> {
     command.find_subcommand(name).ok_or_else(|| {
         let names: Vec<_> = command.get_subcommands().map(Command::get_name).collect();

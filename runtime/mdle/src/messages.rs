@@ -1,4 +1,4 @@
-//! Reports with spans in files, on standard error.
+//! Writes reports with spans in files to standard error.
 
 use std::io::{self, IsTerminal as _};
 
@@ -14,6 +14,6 @@ pub(crate) fn counted(count: u64, thing: &str) -> String {
 /// Prints a report, in colours on a terminal.
 pub(crate) fn write(sources: &Sources, report: Diagnostic<SourceId>) {
     let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
-    // Nobody is left to be told when standard error is closed.
+    // If standard error is closed, the report cannot be shown anywhere.
     let _ = sources.write_report(report, &mut StandardStream::stderr(choice));
 }

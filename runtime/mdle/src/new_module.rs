@@ -1,5 +1,5 @@
 //! `mdle new-module`: writes a crate with a new module, and a program `mdle` that contains the module, from
-//! `runtime/template`.
+//! `runtime/mdle/template`.
 
 use std::fs;
 use std::io::{self, ErrorKind, Write as _};
@@ -12,7 +12,7 @@ use crate::failure::Failure;
 const NAME: &str = "template";
 /// Maximum length of a name, so that every file system accepts files that contain it.
 const LONGEST: usize = 32;
-/// Names of a program's other modules and of its packages.
+/// Names that other modules and packages of a program already have.
 const TAKEN: [&str; 8] = ["mdle", "sensors", "heading", "test", "libm", "core", "std", "alloc"];
 /// Keywords of Rust, which cannot be names of crates.
 const WORDS: [&str; 38] = [
@@ -56,7 +56,7 @@ pub(crate) fn new_module(arguments: &NewModule) -> Result<ExitCode, Failure> {
         if is_there { exists(name) } else { Failure::Usage(format!("the folder `{name}` cannot be made: {error}")) }
     })?;
     fill(folder, name, &sources).map_err(|error| {
-        // The cause matters more than what becomes of the part that was written.
+        // Best effort: the cause is reported, even if the folder cannot be removed.
         let _ = fs::remove_dir_all(folder);
         Failure::Usage(format!("`{name}` cannot be written: {error}"))
     })?;
@@ -64,12 +64,12 @@ pub(crate) fn new_module(arguments: &NewModule) -> Result<ExitCode, Failure> {
         "`{name}` is a program with all of `mdle` and a module `{name}`, which is in {name}/src/lib.rs\n\
          next: `cargo test` in {name}, and the page \"A module of your own\" of the book\n"
     );
-    // Nobody is left to read it when standard output is closed.
+    // If standard output is closed, the text cannot be shown anywhere.
     let _ = io::stdout().write_all(next.as_bytes());
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the failure for a name that a file or a folder already has.
+/// Returns the failure for a name that an existing file or folder has.
 fn exists(name: &str) -> Failure {
     Failure::Usage(format!("`{name}` exists already\nhelp: take another name, or go to another folder"))
 }
@@ -82,8 +82,8 @@ fn fill(folder: &Path, name: &str, sources: &Path) -> io::Result<()> {
     FILES.iter().try_for_each(|(file, text)| fs::write(folder.join(file), named(file, text, name, sources)))
 }
 
-/// Returns the text of a template's file with this name in it. The manifest leaves the workspace of mdle and
-/// gets a workspace of its own; the author chooses the licence.
+/// Returns the text of a template file with the module's name inserted. The manifest gets a workspace of its own
+/// instead of mdle's, and no licence, which the author chooses.
 fn named(file: &str, text: &str, name: &str, sources: &Path) -> String {
     let text = text.replace(NAME, name);
     if file != "Cargo.toml" {
@@ -103,7 +103,7 @@ fn named(file: &str, text: &str, name: &str, sources: &Path) -> String {
 fn sources(checkout: Option<&Path>) -> Result<PathBuf, Failure> {
     let is_checkout = |folder: &Path| folder.join("runtime/mdle/Cargo.toml").is_file();
     let Some(checkout) = checkout else {
-        // The new folder is in this one.
+        // The new folder will be in the current one.
         let sentence =
             "there is no checkout of mdle in `../mdle` of the new folder\nhelp: `--checkout FOLDER` names one";
         let is_there = is_checkout(Path::new("mdle"));
@@ -116,7 +116,7 @@ fn sources(checkout: Option<&Path>) -> Result<PathBuf, Failure> {
     })
 }
 
-/// Fails if the name conflicts with a package, another module or a keyword of Rust.
+/// Fails if `name` conflicts with a package, another module or a keyword of Rust.
 fn must_be_free(name: &str) -> Result<(), Failure> {
     let refused = |sentence: &str, near: String| {
         Err(Failure::Usage(format!("`{name}` {sentence}\nhelp: `mdle new-module {near}`")))

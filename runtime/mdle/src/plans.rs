@@ -1,5 +1,5 @@
-//! Plans that a session loads, and that other robots send, while the robot runs; their texts are compiled like the text
-//! of the first plan.
+//! Compiles and loads plans while the robot runs: the plans of a session, and plans that other robots send. The texts
+//! are compiled like the text of the first plan.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -26,8 +26,8 @@ const SENT: Bounds = Bounds { brackets: 10_000, operands: 10_000, text: 1_000_00
 /// until it ends.
 const NEW_NAMES: usize = 10_000;
 
-/// Stores the first plan of a run, and permits further plans for this target to be loaded. Other robots may send plans
-/// that name only these robots.
+/// Stores the first plan of a run, and permits further plans for `target` to be loaded. Plans from other robots may
+/// name only the robots `robots`.
 ///
 /// # Errors
 /// Fails if the system cannot create the compiler's thread.
@@ -43,18 +43,18 @@ pub(crate) fn begin<A: EngineAlphabet>(
     plans.store(first).map_err(Refusal::Fault)
 }
 
-/// Permits other robots to send plans for this target that name only these robots, in simulated time, in which turns
-/// wait until such a plan is compiled.
+/// Permits other robots to send plans for `target` that name only the robots `robots`. For simulated time: turns wait
+/// until a sent plan is compiled.
 pub(crate) fn begin_at_once<A: EngineAlphabet>(plans: &mut Plans<A>, target: &Arc<Target>, robots: Vec<String>) {
     let (target, known) = (Arc::clone(target), Known::of(plans, robots));
     plans.compile_at_once_with(Box::new(move |source| compiled(source, &target, &known)));
 }
 
-/// Compiles and loads the plans of a text that no other plan of the text uses. A plan of another robot may use only the
-/// names in `known`.
+/// Compiles a text, and loads those of its plans that no other plan of the text uses. A plan from another robot may use
+/// only the names in `known`.
 ///
 /// # Errors
-/// Fails with a sentence and the diagnostics, as `mdlec check` prints them.
+/// Fails with a message and the diagnostics, as `mdlec check` prints them.
 fn compiled<A: EngineAlphabet>(
     source: &PlanSource,
     target: &Target,
@@ -80,7 +80,7 @@ fn compiled<A: EngineAlphabet>(
     if let Err(count) = judged(&diagnostics, false) {
         return Err(faulty(&count, &warnings));
     }
-    // Nobody at this robot has read the warning.
+    // A warning that a sent plan never ends counts as an error, because nobody at this robot reads it.
     if is_sent && diagnostics.iter().any(|diagnostic| diagnostic.code == Code::W0201) {
         return Err(format!("the plan never ends, and nothing has changed\n{}", warnings.trim_end()));
     }
@@ -101,17 +101,17 @@ fn compiled<A: EngineAlphabet>(
     Ok(CompiledPlans { plans: plans.collect::<Result<_, String>>()?, warnings })
 }
 
-/// The names that plans of other robots may use.
+/// The names that plans from other robots may use.
 struct Known {
     robots: Vec<String>,
     /// Names of the paths of the run's first plan.
     paths: Vec<&'static str>,
-    /// For each sender, the remaining budget for new names, which the process keeps.
+    /// For each sender, the remaining budget for new names, which stay in memory until the process ends.
     budgets: RefCell<BTreeMap<String, NameBudget>>,
 }
 
 impl Known {
-    /// Returns these names of robots, and the names of the paths that these plans may replay.
+    /// Returns the names that plans from other robots may use: `robots`, and the paths that the first plan replays.
     fn of<A: EngineAlphabet>(plans: &Plans<A>, robots: Vec<String>) -> Self {
         Self { robots, paths: plans.paths().to_vec(), budgets: RefCell::default() }
     }
@@ -119,7 +119,7 @@ impl Known {
     /// Loads the plan that another robot has sent, after checking the names that the process would keep.
     ///
     /// # Errors
-    /// Fails with a sentence if the plan has unknown names, too many new ones, or cannot be loaded.
+    /// Fails with a message if the plan has unknown names, too many new ones, or cannot be loaded.
     fn load<A: EngineAlphabet>(
         &self,
         sender: &str,
@@ -157,10 +157,10 @@ impl Known {
     }
 }
 
-/// Checks, before they are compiled, that another robot has not sent several plans.
+/// Checks, before compilation, that a text from another robot contains at most one plan, given the names of its plans.
 ///
 /// # Errors
-/// Fails with a sentence if these are the names of several plans.
+/// Fails with a message if there are several names.
 fn one_of(names: &[String]) -> Result<(), String> {
     match names {
         [] | [_] => Ok(()),
@@ -174,7 +174,7 @@ pub(crate) fn texts(input: &Input) -> Vec<(String, String)> {
     names.zip(input.texts().map(str::to_owned)).collect()
 }
 
-/// Returns the message about a text that cannot be read.
+/// Returns the error message for a text that cannot be read.
 fn unread(error: InputError) -> String {
     let message = error.to_string();
     let Some(FaultyFile { sources, diagnostics, .. }) = error.faulty_file() else { return message };
@@ -185,10 +185,10 @@ fn faulty(count: &str, diagnostics: &str) -> String {
     format!("{count} in the plan, and nothing has changed\n{}", diagnostics.trim_end())
 }
 
-/// Returns the diagnostics as on a terminal without colours.
+/// Renders diagnostics as on a terminal without colours.
 fn rendered(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     let mut text = NoColor::new(Vec::new());
-    // A vector takes everything.
+    // Writing to a vector cannot fail.
     let _ = sources.write_all(diagnostics, &mut text);
     String::from_utf8_lossy(&text.into_inner()).into_owned()
 }

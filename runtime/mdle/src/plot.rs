@@ -1,4 +1,4 @@
-//! `mdle plot`: pictures of a recorded run, of its path or over time.
+//! `mdle plot`: draws the path of a recorded run, or a chart of the run over time.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -15,7 +15,7 @@ use crate::failure::{Failure, unwritten};
 use crate::log::created;
 use crate::replay::{self, WantedPlan};
 
-/// Draws a record.
+/// Draws the run of a record.
 ///
 /// # Errors
 /// Fails if the record or the plan cannot be read, or if the picture cannot be written.
@@ -51,7 +51,7 @@ enum Picture {
 }
 
 impl Picture {
-    /// Appends the atoms of a plan to those of a chart; returns the number of the first of them.
+    /// Appends the atoms of a plan to those of a chart; returns the number of the plan's first atom.
     fn add_atoms(&mut self, plan: &ExaminedPlan) -> usize {
         let Self::OverTime(chart) = self else { return 0 };
         let first = chart.atoms.len();
@@ -141,7 +141,7 @@ impl Pictured {
         }
     }
 
-    /// Returns the picture after the last turn of a plan of this name.
+    /// Completes the picture after the last turn; `plan` is the name of the plan.
     fn ended(self, mut picture: Picture, plan: &str, is_whole: bool) -> String {
         self.leaves(self.end, &mut picture);
         let is_over = self.atom.is_none() && self.number.is_some();
@@ -165,7 +165,7 @@ impl Pictured {
     }
 }
 
-/// A signal of any robot with records.
+/// A signal that the records of all robots contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Signal {
     Speed,
@@ -186,7 +186,7 @@ const SIGNALS: [(&str, &str, Signal); 6] = [
     ("battery", "V", Signal::Battery),
 ];
 
-/// Returns the signal of a name.
+/// Returns the signal called `name`.
 ///
 /// # Errors
 /// Fails if there is no such signal.

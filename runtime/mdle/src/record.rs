@@ -4,7 +4,7 @@ use std::io::{BufReader, Read};
 
 use mdle_record::Records;
 
-/// Text for the end of a plan, in the place of a law.
+/// Text shown instead of a law at the end of a plan.
 pub(crate) const OVER: &str = "plan over";
 
 /// Source of the bytes of a record.
@@ -12,7 +12,7 @@ pub(crate) type RecordSource = BufReader<Box<dyn Read>>;
 /// A record that is being read.
 pub(crate) type Record = Records<RecordSource>;
 
-/// A part of a turn that differs.
+/// A part of a turn in which the replay differs from the record.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Part {
     /// Name of the part.
@@ -24,7 +24,7 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// Returns a part of this name; an empty text is shown as `none`.
+    /// Returns a part called `name`; an empty text is shown as `none`.
     pub(crate) fn new(name: &str, recorded: &str, replayed: &str) -> Self {
         let [recorded, replayed] = [recorded, replayed].map(|text| if text.is_empty() { "none" } else { text });
         Self { name: name.to_owned(), recorded: recorded.to_owned(), replayed: replayed.to_owned() }

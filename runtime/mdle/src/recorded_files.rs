@@ -11,8 +11,8 @@ use mdle_files::{InputError, Target, normal};
 
 use crate::failure::{self, Failure};
 
-/// Compiles the plan `wanted` of these files, of which the first is the plan's own; without a name, the only
-/// plan that no other plan uses.
+/// Compiles the plan `wanted` from `files`, the first of which is the plan's own file. Without a name, compiles the
+/// only plan that no other plan uses.
 ///
 /// # Errors
 /// Fails if the plan has errors, or if there is none.
@@ -40,7 +40,7 @@ pub(crate) fn only(
     sources: &Sources,
     wanted: Option<&str>,
 ) -> Result<Machine, Failure> {
-    // Warnings were printed before the run.
+    // Warnings were already printed before the run.
     if let Err(sentence) = judged(diagnostics, false) {
         failure::print(sources, diagnostics);
         failure::error(&sentence);
@@ -77,7 +77,7 @@ impl<'b> RecordedFiles<'b> {
 impl Loader for RecordedFiles<'_> {
     fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String> {
         let folder = self.names.iter().find(|(source, _)| *source == from).and_then(|(_, name)| name.parent());
-        // Plans may name one file in several ways, and its record has the first of them.
+        // Plans may name the same file in different ways, and the record contains only the first of these names.
         let name = normal(&folder.unwrap_or(Path::new("")).join(path));
         if let Some((source, _)) = self.names.iter().find(|(_, known)| *known == name) {
             return Ok(*source);

@@ -1,4 +1,4 @@
-//! Paths that a run has recorded. When the run is repeated, they replace the paths with which it began.
+//! Paths that a run has recorded. In a replay, they replace the paths with which the run began.
 
 use mdle_runtime::{PathStore, Sensed, Setpoint, StoredPath};
 
@@ -11,7 +11,7 @@ pub(crate) struct RecordedPaths {
 }
 
 impl RecordedPaths {
-    /// Replaces the path of this name.
+    /// Replaces the path called `name`.
     pub(crate) fn replace(&mut self, name: String, setpoints: Vec<Setpoint>) {
         self.store = None;
         let setpoints = setpoints.leak();
@@ -21,7 +21,7 @@ impl RecordedPaths {
         }
     }
 
-    /// Replaces paths of an output by the paths that were recorded.
+    /// Replaces the paths of an output by the recorded paths of the same names.
     pub(crate) fn complete(&mut self, y: &mut Sensed) {
         if self.recorded.is_empty() {
             return;

@@ -112,7 +112,7 @@ pub(crate) struct WantedPlan<'a> {
     pub(crate) begin: &'a Begin,
     /// The call without `--plan`, for messages.
     pub(crate) call: &'a str,
-    /// `true` if the plan must be the one that ran.
+    /// `true` if the plan must be the plan that ran.
     pub(crate) has_run: bool,
 }
 
@@ -171,7 +171,7 @@ fn difference(input: &Input, begin: &Begin) -> Option<String> {
     recorded.next().map(|_| "it uses fewer files".to_owned())
 }
 
-/// Prints the outcome for a plan of this name.
+/// Prints the outcome for the plan called `plan`.
 fn tell(outcome: &Outcome, plan: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match outcome {
@@ -193,8 +193,8 @@ fn tell(outcome: &Outcome, plan: &str) -> io::Result<()> {
     }
 }
 
-/// Returns a table of the transitions from the first different turn on: those of the record beside those of the other
-/// plan; empty if there are none.
+/// Returns a table of the transitions from the first different turn on, the record's beside those of the other plan;
+/// empty if there are none.
 fn side_by_side(after: &[Parting], plan: &str) -> String {
     if after.is_empty() {
         return String::new();

@@ -1,4 +1,4 @@
-//! The comparison of a repeated run with its record: the first turn that differs, and its differences.
+//! Compares a replay with its record: finds the first turn that differs, and its differences.
 
 use mdle_record::{Message, MessageKind, ReadError};
 use mdle_runtime::Nanos;
@@ -36,7 +36,7 @@ pub(crate) struct Difference {
     pub(crate) after: Vec<Parting>,
 }
 
-/// The transitions of a turn in the record and in the replay, each by the law that began.
+/// The transitions of a turn in the record and in the replay, each represented by the law that began.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Parting {
     /// Time of the turn.
@@ -47,7 +47,7 @@ pub(crate) struct Parting {
     pub(crate) replayed: Vec<String>,
 }
 
-/// The part of a record that is replayed, and the extent of the comparison.
+/// The part of a record to replay, and the extent of the comparison.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReplayTerms {
     /// Time of the last turn; `None` for all.
@@ -56,7 +56,7 @@ pub(crate) struct ReplayTerms {
     pub(crate) goes_on: bool,
 }
 
-/// Repeats the turns of a record, and compares them with the record.
+/// Replays the turns of a record, and compares them with the record.
 ///
 /// # Errors
 /// Fails if a plan that replaced another plan during the run cannot be compiled.

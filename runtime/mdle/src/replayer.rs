@@ -1,4 +1,4 @@
-//! The turns of a record, repeated by the engine with the recorded outputs, including plans and safety rules.
+//! Replays the turns of a record: the engine makes them again with the recorded outputs, plans and safety rules.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -21,9 +21,9 @@ use crate::recorded_files;
 use crate::recorded_paths::RecordedPaths;
 use crate::safety::{Guarded, SafetyFile};
 
-/// A recorded run that is repeated, for any robot.
+/// A replay of a recorded run, for any robot.
 pub(crate) trait RecordedRun {
-    /// Makes the next turn; returns `None` at the end of the record.
+    /// Replays the next turn; returns `None` at the end of the record.
     fn turn(&mut self) -> Option<Result<ReplayedTurn, Stop>>;
 
     /// Returns the machine of the plan that was active in the last turn, and the moments of that turn; `None`
@@ -42,7 +42,7 @@ pub(crate) trait RecordedRun {
     fn is_whole(&self) -> bool;
 }
 
-/// A turn that was repeated.
+/// A turn that was replayed.
 #[derive(Debug)]
 pub(crate) struct ReplayedTurn {
     /// The turn as recorded.
@@ -63,7 +63,7 @@ pub(crate) struct ReplayedTurn {
     pub(crate) reason: String,
 }
 
-/// Reason why no further turn is repeated.
+/// Reason why the replay ends before the end of the record.
 #[derive(Debug)]
 pub(crate) enum Stop {
     /// The record cannot be read.
@@ -72,7 +72,7 @@ pub(crate) enum Stop {
     Failed(Failure),
 }
 
-/// Returns the run of a record whose first plan has the machine `machine`; plans are observed if `looks` is `true`.
+/// Returns the replay of a record whose first plan has the machine `machine`; plans are observed if `looks` is `true`.
 ///
 /// # Errors
 /// Fails if the plan or a safety rule cannot be loaded.
@@ -172,7 +172,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> RecordedRun for ReplayOf
 }
 
 impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
-    /// Repeats a change before a turn.
+    /// Applies a recorded change before a turn.
     fn repeat(&mut self, change: Change) -> Result<(), Failure> {
         match change {
             Change::Files(files) => self.files.push(files),
@@ -208,7 +208,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
         loaded(machine, &sources, &self.target, self.looks)
     }
 
-    /// Makes a turn.
+    /// Replays a turn, and compares it with the record.
     fn made(&mut self, recorded: RecordedTurn, messages: Vec<Message>) -> ReplayedTurn {
         let (mut y, mut transitions) = (recorded.y, Transitions::default());
         self.paths.complete(&mut y);
@@ -295,7 +295,7 @@ fn words(applied: Applied) -> String {
     .to_owned()
 }
 
-/// Returns the transitions of a turn, in the words of the plan that ran.
+/// Returns the recorded transitions of a turn as text, with the conditions as in the plan that ran.
 fn recorded_transitions(messages: &[Message]) -> String {
     let transitions = messages.iter().filter(|message| message.kind == MessageKind::Transition).filter_map(|message| {
         let json: serde_json::Value = serde_json::from_str(&message.json).ok()?;
@@ -307,7 +307,7 @@ fn recorded_transitions(messages: &[Message]) -> String {
     transitions.collect::<Vec<_>>().join("; ")
 }
 
-/// Returns the transitions of a turn, as a trace shows them.
+/// Returns the replayed transitions of a turn as text, as a trace shows them.
 fn listed<A: Alphabet>(plan: Option<&LoadedPlan<A>>, steps: &[Step]) -> String {
     steps.iter().map(|step| text(plan, step)).collect::<Vec<_>>().join("; ")
 }

@@ -1,11 +1,11 @@
-//! Names of robots in scenarios and in files of links.
+//! Names of robots in scenarios and in link files.
 
 /// Maximum length of a name, in bytes, as in a frame of the state link.
 const LONGEST: usize = 64;
-/// Sentence about the names that robots may have.
+/// Description of valid robot names, for error messages.
 pub(crate) const FORM: &str = "a name is a letter, then letters, digits and `_`, at most 64";
 
-/// Returns `true` if a robot may have this name, which has to be valid in plans.
+/// Returns `true` if `name` is a valid name of a robot. It must be valid in plans as well.
 pub(crate) fn is_robot_name(name: &str) -> bool {
     let mut letters = name.chars();
     letters.next().is_some_and(|first| first.is_ascii_alphabetic())

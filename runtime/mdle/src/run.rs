@@ -24,8 +24,8 @@ use crate::targets::{self, LinkedTarget, Ready};
 /// Exit status if a map could not be written.
 const FAULT: u8 = 3;
 
-/// Runs a plan with these modules, and with the modules that its settings name; returns the exit status of the
-/// run. `open_router` opens a link by a router.
+/// Runs a plan with the modules in `library` and the modules that the settings name; returns the exit status of the
+/// run. `open_router` opens a link through a router.
 ///
 /// # Errors
 /// Fails if the plan cannot be run.
@@ -147,8 +147,8 @@ fn safety_file(arguments: &Run, settings: &Settings) -> Result<Option<SafetyFile
     arguments.safety.as_deref().map(|file| SafetyFile::read(file, "")).transpose()
 }
 
-/// Returns the arguments that the settings add to a run with these arguments on the target of this name, besides the
-/// options of the run.
+/// Returns the arguments that the settings add to a run with `arguments`, except the options of the run. `target` is
+/// the name of the run's target.
 fn determining(arguments: &Run, settings: &Settings, target: &str) -> Vec<String> {
     let target = arguments.target.is_none().then(|| ["--target".to_owned(), target.to_owned()]);
     let modules = modules::only_of_settings(settings, arguments);

@@ -1,4 +1,4 @@
-//! Times of a run, as arguments.
+//! Reads times of a run from arguments.
 
 use mdle_host::Quantity;
 use mdle_runtime::Nanos;
@@ -15,6 +15,6 @@ pub(crate) fn run_time(text: &str) -> Result<Nanos, Failure> {
         let help = "a time of the run is 0 or more, as in `12.3` or `2min`";
         return Err(Failure::Usage(format!("`{text}` is before the start of the run\nhelp: {help}")));
     }
-    // Conversion to an integer saturates.
+    // The conversion to an integer saturates.
     Ok(Nanos(libm::round(seconds * 1e9) as u64))
 }

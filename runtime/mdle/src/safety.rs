@@ -36,11 +36,11 @@ pub(crate) struct Guarded<A: Alphabet> {
 }
 
 impl SafetyFile {
-    /// Reads the file. `named` is the beginning of the error message if the file cannot be read: the place where a file
-    /// names it, or empty.
+    /// Reads the file. `named` is the prefix of the error message if the file cannot be read: the place where another
+    /// file names this file, or empty.
     ///
     /// # Errors
-    /// Fails if the file cannot be read, or is no safety file.
+    /// Fails if the file cannot be read, or is not a safety file.
     pub(crate) fn read(path: &Path, named: &str) -> Result<Self, Failure> {
         let name = path.display();
         let unread = |error| Failure::Usage(format!("{named}the safety file {name} cannot be read: {error}"));
@@ -124,7 +124,7 @@ struct NamedPlan {
 }
 
 impl NamedPlan {
-    /// Returns an error about the plan's file with the place where the safety file names the plan.
+    /// Adds the place where the safety file names the plan to an error about the plan's file.
     fn refused(&self, error: InputError) -> InputError {
         InputError::NamedAt { place: self.place.clone(), error: Box::new(error) }
     }
@@ -184,7 +184,7 @@ impl<A: Alphabet> Guarded<A> {
         self.conditions.reads()
     }
 
-    /// Returns the plan of this number to which a rule diverts; `None` if there is no such plan.
+    /// Returns plan `number` among the plans to which rules divert; `None` if there is no such plan.
     pub(crate) fn diversion(&self, number: usize) -> Option<load::LoadedPlan<A>> {
         self.diversions.get(number).map(Loaded::plan)
     }

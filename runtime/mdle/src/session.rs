@@ -1,4 +1,4 @@
-//! `mdle shell`: a run together with a front end.
+//! `mdle shell`: runs a plan together with a front end for commands.
 
 use std::fs::File;
 use std::io::{self, BufReader, IsTerminal as _};
@@ -17,7 +17,7 @@ use crate::arguments::SessionOptions;
 use crate::failure::Failure;
 use crate::terminal::{HeldTerminal, Printing};
 
-/// Maximum wait after a run for the last answer of the front end.
+/// Maximum wait, after a run, for the last answer of the front end.
 const LAST_ANSWER: Duration = Duration::from_secs(1);
 /// Exit status for a session in which a command was refused.
 const REFUSED: u8 = 1;
@@ -25,14 +25,14 @@ const REFUSED: u8 = 1;
 /// Data that a run needs for its session.
 pub(crate) struct Seat {
     pub(crate) desk: Desk,
-    /// `true` if stepped time does not begin before it is resumed.
+    /// `true` if stepped time is paused at the beginning of the run.
     pub(crate) is_paused: bool,
     /// The stream to which the run reports.
     pub(crate) stream: OwnedFd,
 }
 
-/// Runs a session together with `run`; `plan` is the file of the plan. Returns the exit status of the run, or 1
-/// if that is 0 and a command of a file or a pipe was refused.
+/// Runs a session together with `run`; `plan` is the file of the plan. Returns the exit status of the run, or 1 instead
+/// of 0 if a command from a file or a pipe was refused.
 ///
 /// # Errors
 /// Fails if the commands cannot be read.
@@ -54,17 +54,17 @@ pub(crate) fn held(
     let outcome = front_end(options, plan, hub, printing)?;
     let status = run(Seat { desk, is_paused: options.is_paused, stream });
     if let Some(terminal) = terminal {
-        // A person who is typing is not waited for.
+        // The front end may be waiting for a person to type: the session ends without it.
         terminal.give_back();
         return Ok(status);
     }
-    // Also after a fault: the last answers name the commands that were not carried out.
+    // Waits after a fault as well: the last answers name the commands that were not carried out.
     let is_well = outcome.recv_timeout(LAST_ANSWER).unwrap_or(true);
     Ok(if !is_well && status == ExitCode::SUCCESS { ExitCode::from(REFUSED) } else { status })
 }
 
-/// Starts the front end on a separate thread: at the terminal if `printing` is given, otherwise for the commands of a
-/// file or of standard input. The returned channel gets `true` at the end if every command was carried out.
+/// Starts the front end on a separate thread: at the terminal if `printing` is given; without it, for commands from a
+/// file or from standard input. The returned channel gets `true` at the end if every command was carried out.
 fn front_end(
     options: &SessionOptions,
     plan: &Path,

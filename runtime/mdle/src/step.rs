@@ -32,7 +32,7 @@ pub(crate) struct Steps {
     pub(crate) is_refused: bool,
 }
 
-/// A turn that has been repeated.
+/// A turn that has been replayed.
 #[derive(Debug)]
 struct MadeTurn {
     t: Nanos,
@@ -40,7 +40,7 @@ struct MadeTurn {
     text: String,
 }
 
-/// The turns of a record up to the last repeated turn.
+/// The turns of a record up to the last replayed turn.
 struct Turns<'r> {
     replay: &'r mut dyn RecordedRun,
     until: Option<Nanos>,
@@ -54,7 +54,7 @@ struct Turns<'r> {
     plan: Option<u64>,
 }
 
-/// Steps through a record by these commands, and prints the turns on standard output. `is_typed` is `true` if a person
+/// Steps through a record as `commands` says, and prints the turns on standard output. `is_typed` is `true` if a person
 /// types the commands.
 ///
 /// # Errors
@@ -78,7 +78,7 @@ pub(crate) fn step(
             Ok(None) => break,
             Err(Refused::Sentence(sentence)) => {
                 is_refused |= !is_typed;
-                // Between answers, as in the shell: the order of both counts.
+                // Errors are printed between the answers, as in the shell, because their order matters.
                 let _ = writeln!(io::stderr(), "error: {sentence}");
                 String::new()
             }
@@ -90,7 +90,7 @@ pub(crate) fn step(
 
 /// Reason why a command is not carried out.
 enum Refused {
-    /// Sentence about a wrong command.
+    /// The command is wrong; contains the error message.
     Sentence(String),
     /// A plan cannot be compiled.
     Failure(Failure),
@@ -188,7 +188,7 @@ impl Turns<'_> {
         shown.map_or_else(String::new, |turn| turn.text.clone())
     }
 
-    /// Repeats the turn after the last one; returns `false` if there is none.
+    /// Replays the next turn; returns `false` if there is none.
     fn make(&mut self) -> Result<bool, Failure> {
         if self.end.is_some() {
             return Ok(false);

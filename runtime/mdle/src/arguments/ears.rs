@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgMatches, Command};
 use mdle_quantity::Quantity;
 
-/// Source of the sound of `--ears`.
+/// Source of the sound, as given with `--ears`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum EarsOption {
     /// The robot's own microphones.
@@ -30,7 +30,7 @@ impl EarsOption {
     }
 }
 
-/// Returns a command with these options.
+/// Returns `command` with the options `--ears` and `--head`.
 pub(super) fn with_ears(command: Command) -> Command {
     let ears = Arg::new("ears")
         .long("ears")
@@ -46,7 +46,7 @@ pub(super) fn with_ears(command: Command) -> Command {
     command.args([ears, head])
 }
 
-/// Returns the source of the sound, if there is one, and the radius of the head in metres.
+/// Returns the source of the sound, or `None` without `--ears`, and the radius of the head in metres.
 pub(super) fn ears(matches: &ArgMatches) -> (Option<EarsOption>, f64) {
     let ears = matches.get_one::<String>("ears").map(|text| EarsOption::read(text));
     (ears, matches.get_one("head").copied().unwrap_or(mdle_sound::RADIUS))
@@ -55,7 +55,7 @@ pub(super) fn ears(matches: &ArgMatches) -> (Option<EarsOption>, f64) {
 /// Reads the radius of a head, in metres.
 ///
 /// # Errors
-/// Fails with a sentence if the text is not a length from 2 cm to 50 cm.
+/// Fails with a message if the text is not a length from 2 cm to 50 cm.
 pub(crate) fn head(text: &str) -> Result<f64, String> {
     let radius = Quantity::Length.read(text, "m")?;
     if (0.02..=0.5).contains(&radius) { Ok(radius) } else { Err("expected 2 cm to 50 cm".to_owned()) }

@@ -13,7 +13,7 @@ pub(crate) struct Locate {
     pub(crate) log: PathBuf,
     /// The YAML files of the maps.
     pub(crate) maps: Vec<PathBuf>,
-    /// Pose near which the record began, in the axes of each map, as typed.
+    /// Pose near which the record began, in the coordinates of each map, as typed.
     pub(crate) at: String,
 }
 

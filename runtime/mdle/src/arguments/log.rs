@@ -15,8 +15,7 @@ pub(crate) enum Log {
     Export {
         /// The record.
         log: PathBuf,
-        /// `Some` to write a script instead of a table, with the file of the plan if the record does not contain the
-        /// plan.
+        /// `Some` to write a script instead of a table; contains the file of the plan if the record lacks the plan.
         script: Option<Option<PathBuf>>,
         /// File to write; `None` for standard output.
         file: Option<PathBuf>,

@@ -13,9 +13,9 @@ pub(crate) struct MakeMap {
     pub(crate) log: PathBuf,
     /// The YAML file to write; the image is written beside it.
     pub(crate) file: PathBuf,
-    /// Pose of the robot at the start of the record, in the axes of the map.
+    /// Pose of the robot at the start of the record, in map coordinates, as typed.
     pub(crate) at: String,
-    /// PNG to write as well.
+    /// PNG to write as well; `None` to write no PNG.
     pub(crate) png: Option<PathBuf>,
 }
 

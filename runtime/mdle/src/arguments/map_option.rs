@@ -10,24 +10,24 @@ use crate::evidence::USUAL_POSE;
 /// Names of the options.
 pub(super) const OPTIONS: [&str; 2] = ["--map", "--map-at"];
 
-/// The map of a run.
+/// The map to create in a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct MapOption {
     /// YAML file to write.
     pub(crate) file: PathBuf,
-    /// Pose of the robot at the start of the run, in the axes of the map.
+    /// Pose of the robot at the start of the run, in map coordinates, as typed.
     pub(crate) at: String,
 }
 
 impl MapOption {
-    /// Returns the map of the parsed command line, if there is one.
+    /// Returns the map that the parsed command line requests; `None` if it requests no map.
     pub(super) fn of(matches: &ArgMatches) -> Option<Self> {
         let at = matches.get_one::<String>("map-at").map_or(USUAL_POSE, String::as_str).to_owned();
         matches.get_one::<PathBuf>("map").map(|file| Self { file: file.clone(), at })
     }
 }
 
-/// Returns a command with these options.
+/// Returns `command` with the options `--map` and `--map-at`.
 pub(super) fn with_map(command: Command) -> Command {
     let map = Arg::new("map")
         .long("map")
@@ -45,8 +45,8 @@ pub(super) fn with_map(command: Command) -> Command {
     command.args([map, at])
 }
 
-/// Removes these options from the words of a command, because a command that repeats a run is not to save the map
-/// again.
+/// Removes `--map` and `--map-at` from the words of a command line, because a repetition of the run must not save the
+/// map again.
 pub(super) fn without_map(words: Vec<OsString>) -> Vec<OsString> {
     let mut words = words.into_iter();
     let mut kept = Vec::new();
@@ -56,7 +56,7 @@ pub(super) fn without_map(words: Vec<OsString>) -> Vec<OsString> {
         if !OPTIONS.contains(&name) {
             kept.push(word);
         } else if name == text {
-            // Its value.
+            // Skips the value of the option.
             words.next();
         }
     }

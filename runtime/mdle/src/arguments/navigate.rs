@@ -12,7 +12,7 @@ pub(crate) struct Navigate {
     pub(crate) graph: PathBuf,
     /// Landmark at which the robot begins.
     pub(crate) from: String,
-    /// Landmark to which the robot is to go; landmarks to pass on the way precede it, separated by commas.
+    /// Destination landmark, preceded by the landmarks to pass on the way, separated by commas.
     pub(crate) to: String,
     /// Name or folder of the target; `None` for the target of the `mdle.toml` beside the graph.
     pub(crate) target: Option<String>,

@@ -20,9 +20,9 @@ pub(crate) struct Why {
 /// A question about a record.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Question {
-    /// The reason why the current atom ran at this time, as typed.
+    /// Asks why the current atom ran at a time; contains the time as typed.
     At(String),
-    /// The reason why this atom or behavior did not begin.
+    /// Asks why an atom or behavior did not begin; contains the text that names it.
     Not(String),
 }
 

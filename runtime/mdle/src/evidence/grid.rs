@@ -1,4 +1,4 @@
-//! An evidence grid: for each cell the log-odds of being occupied, from pings of sonars (Martin and Moravec, the
+//! An evidence grid: the log-odds that each cell is occupied, computed from sonar pings (Martin and Moravec, the
 //! paper's reference 26; docs/src/navigation.md has the model).
 
 /// Number of cells along each axis, as in the paper's Fig. 9.
@@ -11,7 +11,7 @@ pub(crate) const HALF: f64 = CELL * CELLS as f64 / 2.0;
 const MOST: f64 = 5.0;
 /// Half the angle of a sonar's cone, in radians.
 const CONE: f64 = 12.5 * std::f64::consts::PI / 180.0;
-/// Tangent of half the angle of a wider cone, which contains a sonar's cone in spite of rounding.
+/// Tangent of the half-angle of a wider cone, which contains a sonar's cone despite rounding errors.
 const WIDER: f64 = 0.25;
 /// Half the depth of an echo's arc, in metres.
 const DEPTH: f64 = 0.05;
@@ -23,7 +23,7 @@ const SILENT: f64 = 0.5;
 /// Distance, in metres, from which no cell is marked as free.
 const FADES: f64 = 2.5;
 
-/// A ping, in the axes of the grid.
+/// A ping, in grid coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct GridPing {
     /// Position of the transducer, in metres.
@@ -35,10 +35,10 @@ pub(crate) struct GridPing {
     pub(crate) range: Option<f64>,
 }
 
-/// A square grid around the origin of its axes.
+/// A square grid, centred on the origin of its coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EvidenceGrid {
-    /// Log-odds of the cells, row by row; the rows follow each other along the second axis.
+    /// Log-odds of the cells, row by row along the second axis.
     odds: Vec<f64>,
 }
 
@@ -62,7 +62,7 @@ impl EvidenceGrid {
         }
     }
 
-    /// Returns a grid with these probabilities, which are given row by row along the second axis.
+    /// Returns a grid with these probabilities, given row by row along the second axis.
     pub(super) fn of(probabilities: impl Iterator<Item = f64>) -> Self {
         let odds = |p: f64| libm::log(p / (1.0 - p)).clamp(-MOST, MOST);
         Self { odds: probabilities.map(odds).collect() }
@@ -78,8 +78,7 @@ impl EvidenceGrid {
         self.odds.iter().copied()
     }
 
-    /// Returns the probability that a cell is occupied, by its column along the first axis and its row along the
-    /// second.
+    /// Returns the probability that a cell is occupied. `column` counts along the first axis, `row` along the second.
     pub(crate) fn probability(&self, column: usize, row: usize) -> f64 {
         let odds = self.odds.get(row * CELLS + column).copied().unwrap_or_default();
         1.0 / (1.0 + libm::exp(-odds))
@@ -100,16 +99,16 @@ pub(super) fn middle(cell: usize) -> f64 {
 
 /// Returns the indices, along an axis, of the cells whose centres may lie within `reach` of a position.
 fn near(position: f64, reach: f64) -> std::ops::Range<usize> {
-    // A conversion takes what lies outside to the nearest number.
+    // The conversion to an integer saturates.
     let cell = |at: f64| (libm::floor((at + HALF) / CELL).max(0.0) as usize).min(CELLS);
     cell(position - reach)..cell(position + reach + CELL)
 }
 
-/// Returns the change of the log-odds of a cell by a ping. `x` and `y` are the distances of the cell from the
-/// transducer along the axes, in metres; `sin` and `cos` are those of the transducer's direction.
+/// Returns the change in a cell's log-odds that a ping causes. `x` and `y` are the cell's coordinates relative to the
+/// transducer, in metres; `sin` and `cos` belong to the transducer's direction.
 fn evidence(x: f64, y: f64, (sin, cos): (f64, f64), ping: &GridPing) -> f64 {
     let (ahead, aside) = (x * cos + y * sin, y * cos - x * sin);
-    // Nine cells of ten need no angle: they are beside a wider cone, or behind.
+    // Nine cells in ten lie outside the wider cone or behind the transducer, and need no angle.
     if aside.abs() > WIDER * ahead {
         return 0.0;
     }
@@ -159,7 +158,7 @@ mod tests {
             for tenth in -1800..1800_i32 {
                 let (sin, cos) = libm::sincos(direction + f64::from(tenth).to_radians() / 10.0);
                 let changed = evidence(0.4 * cos, 0.4 * sin, libm::sincos(direction), &ping) < 0.0;
-                // Its edges, which rounding moves, are left out.
+                // The edges of the cone are not checked, because rounding moves them.
                 assert!(tenth.abs() == 125 || changed == (tenth.abs() < 125), "{direction} {tenth}");
             }
         }

@@ -1,4 +1,5 @@
-//! The files of a map: a YAML file as ROS reads it, a grey image beside it in which black is occupied, and a PNG.
+//! The files of a map: a YAML file in the format of ROS, a greyscale image beside it in which black is occupied, and a
+//! PNG.
 
 use std::fs::{self, File};
 use std::io;
@@ -19,15 +20,14 @@ pub(crate) struct MapFiles {
 }
 
 impl MapFiles {
-    /// Returns the files of a map: the YAML file `yaml`, its image beside it and, if it is given, the PNG `picture` of
-    /// the image.
+    /// Returns the files of a map: the YAML file `yaml`, the image beside it and, if given, the PNG `picture`.
     ///
     /// # Errors
-    /// Fails if the name of the file does not end in `.yaml` or `.yml`, if one of the files exists already, or if one
-    /// cannot be written there.
+    /// Fails if the name of the file does not end in `.yaml` or `.yml`, if one of the files exists already, or if a
+    /// file cannot be created.
     pub(crate) fn new(yaml: &Path, picture: Option<&Path>) -> Result<Self, Failure> {
         let files = Self { yaml: yaml.to_owned(), image: image(yaml)?, picture: picture.map(Path::to_owned) };
-        // None is written if another is in the way.
+        // No file is written if one of them exists already.
         if let Some(other) = files.all().find(|path| path.exists()) {
             return Err(exists(other));
         }
@@ -43,10 +43,10 @@ impl MapFiles {
         [Some(&self.yaml), Some(&self.image), self.picture.as_ref()].into_iter().flatten().map(PathBuf::as_path)
     }
 
-    /// Saves a map, and replaces one that was saved before. Each file is written completely or not at all.
+    /// Saves a map, replacing an earlier version. Each file is written completely or not at all.
     ///
     /// # Errors
-    /// Fails with a sentence if a file cannot be written.
+    /// Fails with a message if a file cannot be written.
     pub(crate) fn save(&self, map: &SavedMap) -> Result<(), String> {
         let name = self.image.file_name().unwrap_or_default().display();
         let text = format!(
@@ -64,7 +64,7 @@ impl MapFiles {
     }
 }
 
-/// Returns the name of a file while it is being written.
+/// Returns the temporary name of a file that is being written.
 fn unfinished(file: &Path) -> PathBuf {
     let mut name = file.file_name().unwrap_or_default().to_owned();
     name.push(format!(".{}.tmp", std::process::id()));
@@ -75,7 +75,7 @@ fn write(file: &Path, bytes: &[u8]) -> Result<(), String> {
     let unfinished = unfinished(file);
     let written = fs::write(&unfinished, bytes).and_then(|()| fs::rename(&unfinished, file));
     written.map_err(|error: io::Error| {
-        // The first error is the one to report.
+        // Best effort: the first error is the one to report.
         let _ = fs::remove_file(&unfinished);
         format!("{} cannot be written: {error}", file.display())
     })

@@ -1,4 +1,4 @@
-//! Makes a map from pings, and a score that tells how well their own echoes fit it.
+//! Makes a map from pings, and computes a score of how well the pings' own echoes fit the map.
 
 use super::grid::{CELLS, EvidenceGrid, GridPing, cell_at};
 use super::matching::{BEFORE_WEIGHT, Echo};

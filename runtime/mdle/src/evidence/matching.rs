@@ -15,8 +15,8 @@ const COARSE: (f64, f64) = (0.10, 3.0 * DEGREE);
 const COARSE_ANGLES: i16 = 8;
 /// Steps of the searches around the best pose so far.
 const FINE: [(f64, f64); 3] = [(0.05, 1.5 * DEGREE), (0.025, 0.75 * DEGREE), (0.0125, 0.5 * DEGREE)];
-/// Tolerance, in metres or radians, with which a pose counts as at the edge of the search, because steps are added with
-/// rounding errors.
+/// Tolerance, in metres or radians, for a pose at the edge of the search, because adding the steps causes rounding
+/// errors.
 const ROUNDING: f64 = 1e-9;
 /// A degree, in radians.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
@@ -24,7 +24,7 @@ const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// A pose in a grid, and how well the echoes fit the grid at this pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fit {
-    /// Pose at which the robot's odometry was zero, in the axes of the grid.
+    /// Pose, in grid coordinates, at which the robot's odometry was zero.
     pub(crate) origin: Pose,
     /// Mean evidence for each echo.
     pub(crate) score: f64,
@@ -32,8 +32,8 @@ pub(crate) struct Fit {
     pub(crate) is_at_edge: bool,
 }
 
-/// An echo in the axes of its ping: its position, and a position between the transducer and the echo, which should be
-/// free.
+/// An echo in the coordinates of its ping: its position, and a position between the transducer and the echo that should
+/// be free.
 pub(super) struct Echo {
     pub(super) at: (f64, f64),
     pub(super) before: (f64, f64),
@@ -49,8 +49,8 @@ impl Echo {
 }
 
 /// Finds the pose at which the echoes of `pings` fit the grid best, up to `ways` times 10 cm from `near` along each
-/// axis and up to 24° from its heading. The pings are in the axes of odometry; the search rotates them about the origin
-/// of these axes. Returns `None` if no ping has an echo.
+/// axis and up to 24° from the heading of `near`. The pings are in odometry coordinates; the search rotates them about
+/// the origin. Returns `None` if no ping has an echo.
 pub(crate) fn fit(grid: &EvidenceGrid, pings: &[GridPing], near: Pose, ways: i16) -> Option<Fit> {
     let echoes: Vec<Echo> = pings.iter().filter_map(Echo::of).collect();
     if echoes.is_empty() {

@@ -1,20 +1,20 @@
-//! The pings of a run, each once, in the order in which the sonars fired.
+//! Takes the pings of a run from the robot's outputs, each once, in the order in which the sonars fired.
 
 use mdle_runtime::{Nanos, Pings, Pose, SONARS, Sensed, SonarId};
 
 use super::grid::GridPing;
 
-/// State from which the pings of a run are taken in order, each once.
+/// Converts outputs to pings in grid coordinates, each once.
 #[derive(Debug)]
 pub(crate) struct PingOrder {
-    /// Pose, in the axes of the grid, at which the robot's odometry was zero.
+    /// Pose, in grid coordinates, at which the robot's odometry was zero.
     origin: Pose,
     /// Time of the last ping taken from each sonar.
     last: [Option<Nanos>; SONARS],
 }
 
 impl PingOrder {
-    /// Returns the order of the pings of a run, before the first ping. `origin` is the pose in the grid at which the
+    /// Returns the state before the first ping of a run. `origin` is the pose, in grid coordinates, at which the
     /// robot's odometry is zero.
     pub(crate) fn new(origin: Pose) -> Self {
         Self { origin, last: [None; SONARS] }
@@ -36,7 +36,7 @@ impl PingOrder {
         new.into_iter().map(|(.., from, range)| self.placed(&from, range.map(|range| range.0))).collect()
     }
 
-    /// Returns a ping of a transducer at this pose by odometry, converted to the axes of the grid.
+    /// Returns a ping in grid coordinates, given the transducer's pose `from` in odometry coordinates.
     fn placed(&self, from: &Pose, range: Option<f64>) -> GridPing {
         let (sin, cos) = libm::sincos(self.origin.theta.0);
         let (x, y) = (from.x.0, from.y.0);
@@ -49,7 +49,7 @@ impl PingOrder {
     }
 }
 
-/// Returns the pings after a time.
+/// Returns the pings after the time `before`; all pings for `None`.
 fn fresh(pings: &Pings, before: Option<Nanos>) -> impl Iterator<Item = &mdle_runtime::Ping> {
     pings.newest_first().take_while(move |ping| before.is_none_or(|before| ping.at > before))
 }

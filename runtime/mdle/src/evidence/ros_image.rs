@@ -1,4 +1,4 @@
-//! An evidence grid as the grey image of a map of ROS, in which black is occupied.
+//! An evidence grid as the greyscale image of a ROS map, in which black is occupied.
 
 use std::path::{Path, PathBuf};
 
@@ -50,7 +50,7 @@ pub(super) fn image(file: &Path) -> Result<PathBuf, Failure> {
     Err(Failure::Usage(format!("{} is no name of a map: it has to end in .yaml\nhelp: {help}", file.display())))
 }
 
-/// Returns the grid of an image; `None` if the bytes are no image of a landmark's map.
+/// Returns the grid of an image; `None` if the bytes are not an image of a landmark's map.
 pub(super) fn grid(bytes: &[u8]) -> Option<EvidenceGrid> {
     let greys = bytes.strip_prefix(head().as_bytes()).filter(|greys| greys.len() == CELLS * CELLS)?;
     let rows = greys.chunks_exact(CELLS).rev().flatten();

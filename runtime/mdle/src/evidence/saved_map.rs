@@ -12,14 +12,14 @@ use crate::failure::Failure;
 
 /// Maximum size of a file, in bytes.
 const LARGEST: u64 = 1_000_000;
-/// Default pose in the axes of a map, in metres and degrees: a robot begins at this pose to make the map, and is later
+/// Default pose, in map coordinates, in metres and degrees. A robot begins at this pose to make the map, and is later
 /// searched near it.
 pub(crate) const USUAL_POSE: &str = "-0.75,0,0";
-/// Key of the least score in the YAML file.
+/// Key of the minimum score in the YAML file.
 const KEY: &str = "least_score";
-/// Least score of a map whose file does not have the key.
+/// Default minimum score, for a map whose file lacks the key.
 const USUAL: f64 = 1.7;
-/// Least score of a map, as a fraction of the score of the echoes from which the map was made.
+/// Minimum score of a map, as a fraction of the score of the echoes from which the map was made.
 const FRACTION: f64 = 0.7;
 
 /// Reads the pose that is the value of an option.
@@ -47,7 +47,7 @@ impl SavedMap {
     ///
     /// # Errors
     /// Fails if the name does not end in `.yaml` or `.yml`, if the file or the image beside it cannot be read, or if
-    /// the image does not belong to such a map.
+    /// the image is not that of a landmark's map.
     pub(crate) fn read(file: &Path) -> Result<Self, Failure> {
         let image = ros_image::image(file)?;
         let unread = |of: &Path, why: &dyn std::fmt::Display| {
@@ -64,7 +64,7 @@ impl SavedMap {
         Ok(Self { grid, least })
     }
 
-    /// Returns the line of the YAML file about the least score.
+    /// Returns the line of the YAML file that contains the minimum score.
     pub(crate) fn line(&self) -> String {
         format!("{KEY}: {}\n", self.least)
     }
@@ -79,7 +79,7 @@ impl SavedMap {
     }
 }
 
-/// Reads the least score in the text of a YAML file.
+/// Reads the minimum score from the text of a YAML file.
 fn least(yaml: &str) -> Result<f64, String> {
     let value = yaml.lines().find_map(|line| line.strip_prefix(KEY)?.strip_prefix(':'));
     let Some(value) = value.map(str::trim) else { return Ok(USUAL) };

@@ -24,7 +24,7 @@ pub(super) fn cut(log: &Path, until: Nanos, file: &Path) -> Result<ExitCode, Fai
         let (turn, messages) = match turn {
             Ok(turn) => turn,
             Err(error) => {
-                // What there is of it would look like a whole record.
+                // The part written so far would look like a complete record.
                 let _ = std::fs::remove_file(file);
                 return damaged(log, &error);
             }

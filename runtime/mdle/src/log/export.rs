@@ -35,7 +35,7 @@ pub(super) fn export(log: &Path, file: Option<&Path>) -> Result<ExitCode, Failur
     outcome
 }
 
-/// Lines that go to a file or to standard output.
+/// Writer of lines to a file or to standard output.
 pub(super) struct Table {
     out: Box<dyn Write>,
     /// The file; `None` for standard output.
@@ -79,7 +79,7 @@ impl Table {
     }
 }
 
-/// Returns the line of the column names; columns are in SI units.
+/// Returns the header line; columns are in SI units.
 fn head() -> String {
     let mut line = "turn,t,plan,state,x,y,theta,v,omega,bumpers,battery".to_owned();
     for sonar in 0..SONARS {
@@ -121,7 +121,7 @@ fn cause(message: &Message) -> Option<String> {
     transition.get("cause")?.as_str().map(str::to_owned)
 }
 
-/// Returns a text as a field of CSV.
+/// Returns `text` as a CSV field, in quotes if necessary.
 fn quoted(text: &str) -> String {
     if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }

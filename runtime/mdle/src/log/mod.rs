@@ -32,7 +32,7 @@ pub(crate) fn log(arguments: &Log) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Creates a file that does not exist yet.
+/// Creates a file, which must not exist yet.
 ///
 /// # Errors
 /// Fails if the file exists, or if the system cannot create it.

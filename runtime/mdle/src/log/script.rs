@@ -15,8 +15,8 @@ use crate::examined::{ExaminedRun, ExaminedTurn, Moment};
 use crate::failure::Failure;
 use crate::replay::{self, WantedPlan};
 
-/// Writes a line for each turn of a record: the interrupts that its plan evaluated and that have fired, and the
-/// laws that have completed. `plan` is the file of the plan, if the record does not contain it.
+/// Writes a line for each turn of a record, with the interrupts that its plan evaluated and that fired, and the laws
+/// that completed. `plan` is the file of the plan, if the record does not contain it.
 ///
 /// # Errors
 /// Fails if the record or the plan cannot be read, if a script cannot express a turn, or if the file cannot be
@@ -40,7 +40,7 @@ pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Re
             table.close()?;
             return Err(replaced(log, &turn));
         }
-        // The script begins with the plan, which may wait for modules first.
+        // The script begins when the plan begins; the plan may first wait for modules.
         let Some(examined) = run.plan() else { continue };
         way = turn.moments.first().and_then(|moment| moment.scopes.first()).map_or(way, |plan| plan.way);
         let line = line(&examined.machine, &turn, way).map_err(|text| untold(log, &turn, &text))?;
@@ -61,7 +61,7 @@ fn line(machine: &Machine, turn: &ExaminedTurn, way: Nanometers) -> Result<Strin
         known.into_iter().filter(|(_, is_so)| *is_so).map(|(text, _)| text.to_owned()).collect::<Vec<_>>()
     };
     let (fired, completed) = (listed(fired), listed(completed));
-    // Billionths as decimals: a script is read to the nanosecond and the nanometre.
+    // Nine decimals, because scripts have a resolution of a nanosecond and a nanometre.
     let [t, way] = [turn.recorded.t, Nanos(way.0)].map(|billionths| Seconds(billionths).to_string());
     let heading = turn.recorded.y.odometry.theta.degrees();
     let mut line = format!("{{\"t\":{t},\"way\":{way},\"heading\":{heading}");
@@ -82,7 +82,7 @@ fn interrupts<'m>(machine: &'m Machine, moment: &Moment, fired: &mut BTreeMap<&'
 }
 
 /// Records the values of the quarks of a condition. `examined` yields the parts of the condition in the order in which
-/// they were examined; `stuck` is one part.
+/// they were examined; `stuck` counts as a single part.
 fn parts<'m>(
     machine: &'m Machine,
     condition: &'m Condition,

@@ -1,4 +1,4 @@
-//! `mdle locate`: names the landmark at which a robot turned, and its pose there (docs/src/navigation.md).
+//! `mdle locate`: finds the landmark at which a robot turned on the spot, and its pose there (docs/src/navigation.md).
 
 use std::process::ExitCode;
 
@@ -9,13 +9,13 @@ use crate::arguments::Locate;
 use crate::evidence::{Fit, SavedMap, fit, pose};
 use crate::failure::{self, Failure};
 
-/// Number of steps of 10 cm, to either side of the expected pose, in which the pose is searched.
+/// Maximum distance of the search from the expected pose, in steps of 10 cm along each axis.
 const WAYS: i16 = 4;
 
 /// Exit status if the robot is at none of the landmarks.
 const NOWHERE: u8 = 1;
 
-/// Prints how well a record fits each map. The maps of landmarks at which the robot may be come first, the best fit
+/// Prints how well a record fits each map. The list begins with the landmarks at which the robot may be, the best fit
 /// first.
 ///
 /// # Errors
@@ -37,7 +37,7 @@ pub(crate) fn locate(arguments: &Locate) -> Result<ExitCode, Failure> {
     });
     for (name, objection, Fit { origin, score, .. }) in &fits {
         let (x, y, heading) = (origin.x.0, origin.y.0, origin.theta.wrapped().degrees());
-        // Minus zero is zero.
+        // Adding zero removes the sign of a negative zero.
         let [x, y] = [x, y].map(|metres| libm::round(metres * 100.0) / 100.0 + 0.0);
         let (heading, score) = (libm::round(heading * 10.0) / 10.0 + 0.0, libm::round(score * 100.0) / 100.0 + 0.0);
         let not = objection.as_ref().map_or_else(String::new, |why| format!("; not there: {why}"));

@@ -27,19 +27,19 @@ pub(crate) enum AudioSource {
 /// Sound in a single run.
 pub(super) enum Audio {
     Robot(Microphones),
-    /// Samples of a file, and the number of samples that were taken.
+    /// Samples of a file, and the number of samples already taken.
     Wav(Arc<[[f32; 2]]>, usize),
     Raw(RawAudio),
 }
 
-/// Samples that a recorder has written and that have not been taken yet.
+/// Samples that a recorder has written and the module has not taken yet.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RawAudio(Arc<Mutex<RawSamples>>);
 
 #[derive(Debug, Default)]
 struct RawSamples {
     samples: Vec<[f32; 2]>,
-    /// Reason why no more samples will come; `None` until then.
+    /// Reason why no more samples will arrive; `None` while the recorder runs.
     end: Option<String>,
 }
 
@@ -47,7 +47,7 @@ impl AudioSource {
     /// Opens the source of an option.
     ///
     /// # Errors
-    /// Fails with a sentence if the file cannot be used.
+    /// Fails with a message if the file cannot be used.
     pub(crate) fn open(option: &EarsOption) -> Result<Self, String> {
         match option {
             EarsOption::Robot => Ok(Self::Robot),
@@ -70,7 +70,7 @@ impl Audio {
     /// Takes the samples up to this time; `None` after the end of a file.
     ///
     /// # Errors
-    /// Fails with a sentence if the recorder has ended.
+    /// Fails with a message if the recorder has ended.
     pub(super) fn take(&mut self, until: Nanos) -> Result<Option<Vec<[f32; 2]>>, String> {
         match self {
             Self::Robot(microphones) => Ok(Some(microphones.take(until))),
@@ -143,7 +143,8 @@ impl RawAudio {
                 "help: give `robot`, a file that ends in .wav, the pipe of a recorder, or `-` for standard input";
             return Err(format!("--ears {shown}: there is no such file\n{help}"));
         }
-        // A pipe may open only once somebody writes to it, and a read of it may take for ever: neither may hold a turn.
+        // Opening a pipe blocks until another process writes to it, and a read may block forever: neither may delay a
+        // turn.
         let read = move || {
             own.ends(match path.map(File::open) {
                 None => own.read(io::stdin()),
@@ -180,7 +181,7 @@ impl RawAudio {
     fn put(&self, samples: impl Iterator<Item = [f32; 2]>) {
         let mut recorded = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         recorded.samples.extend(samples);
-        // Who does not listen for a second misses what was before.
+        // Samples that the module has not taken for a second are dropped.
         let old = recorded.samples.len().saturating_sub(10 * WINDOW);
         recorded.samples.drain(..old);
     }
@@ -207,7 +208,7 @@ mod tests {
 
     use super::*;
 
-    /// Writes a WAV file of this name and returns its path.
+    /// Writes a WAV file called `name`, and returns its path.
     fn written(name: &str, sample_rate: u32, channels: u16, values: &[i16]) -> PathBuf {
         let folder = env::temp_dir().join(format!("mdle_ears_{}", process::id()));
         fs::create_dir_all(&folder).unwrap();
@@ -260,7 +261,7 @@ mod tests {
     #[test]
     fn a_recorder_is_read_across_pieces_until_it_ends() {
         let recorder = RawAudio::default();
-        // A frame and a half, then its rest.
+        // One and a half frames, then the rest of the second frame.
         let pieces = [1_u8, 0, 255, 255, 2, 0].as_slice().chain([0, 1].as_slice());
         let end = recorder.read(pieces);
         recorder.ends(end);

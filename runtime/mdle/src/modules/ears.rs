@@ -13,7 +13,7 @@ use super::audio::Audio;
 const RANGE: Meters = Meters(2.0);
 /// Time, in seconds, for which a bearing is published without confirmation.
 const REMEMBERED: f64 = 5.0;
-/// Number of turns whose headings are kept, so that the heading in the middle of a window can be found.
+/// Number of turns whose headings are kept, to find the heading in the middle of a window.
 const TURNS: usize = 200;
 
 /// Time from the middle of a window to its end, in nanoseconds.
@@ -50,8 +50,7 @@ impl EarsModule {
         module
     }
 
-    /// Processes the sound of the turn that ended with the last break; returns `false` after the end of the
-    /// sound.
+    /// Processes the sound of the turn that ended with the last turn break; returns `false` after the end of the sound.
     fn turn(&mut self, offer: &mut Offer<'_>) -> Result<bool, Fault> {
         let (Some(Radians(theta)), now) = (offer.get(self.theta), offer.now()) else { return Ok(true) };
         let before = self.headings.back().map_or(now, |(before, _)| *before);

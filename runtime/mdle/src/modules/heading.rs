@@ -1,4 +1,4 @@
-//! The module `heading`: bearing and range of a point in the axes of the robot's odometry.
+//! The module `heading`: bearing and range of a point in odometry coordinates.
 
 use mdle_engine::{Declare, Fault, In, Module, Out, Relevance, Turn};
 use mdle_runtime::{Meters, Radians, Sensed};

@@ -1,9 +1,9 @@
 //! The modules `pings` and `map` of a run with `--map`, which make an evidence grid while the robot drives
 //! (docs/src/navigation.md).
 //!
-//! `pings` makes its turn in every turn, and keeps the pings of the robot's output. `map` adds these pings to the grid
-//! in the background, up to the last break, so that its published values do not depend on the speed of its thread. At
-//! the end of the run, [`MapRun::save`] adds the remaining pings.
+//! `pings` runs in every turn and keeps the pings of the robot's output. `map` adds these pings to the grid in the
+//! background, up to the last turn break (docs/src/engine.md), so that its published values do not depend on the speed
+//! of its thread. At the end of the run, [`MapRun::save`] adds the remaining pings.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -80,7 +80,7 @@ impl MapRun {
     /// Adds the pings of the turns up to this time to the map; returns the map, locked.
     fn take(&self, until: Nanos) -> MutexGuard<'_, Making> {
         let mut making = locked(&self.making);
-        // The turns wait only while a ping is removed.
+        // The list of pings is locked only while a ping is removed, so that turns wait only briefly.
         let next = || locked(&self.heard).waiting.pop_front_if(|(at, _)| *at <= until);
         while let Some((_, ping)) = next() {
             making.maker.take(&ping);
@@ -96,7 +96,7 @@ impl MapRun {
     /// Saves the map of all pings at the end of the run.
     ///
     /// # Errors
-    /// Fails with a sentence if a file cannot be written.
+    /// Fails with a message if a file cannot be written.
     pub(crate) fn save(&self) -> Result<Saved, String> {
         let mut making = self.take(Nanos(u64::MAX));
         let saved = self.save_made(&making);
@@ -177,14 +177,14 @@ impl MapModule {
         module
     }
 
-    /// Adds the pings up to the last break to the map, and carries out a command to save it.
+    /// Adds the pings up to the last turn break to the map, and carries out a command to save it.
     fn turn(&mut self, offer: &mut Offer<'_>) {
         let command = offer.reading(self.save).map(|reading| reading.at);
         if offer.get(self.save) == Some(true) && command != self.commanded {
             self.commanded = command;
             match self.run.save_until(offer.now()) {
                 Ok(saved) => self.times = self.times.saturating_add(i64::from(saved)),
-                // The map goes on, and may be saved later.
+                // The map continues to grow, and can be saved later.
                 Err(sentence) => failure::warning(&format!("the map {sentence}; it can be saved again")),
             }
         }

@@ -63,7 +63,7 @@ pub(crate) struct SoundInput {
 }
 
 impl SoundInput {
-    /// Returns the modules of a run with the module `heading`, which listens to the run's sound.
+    /// Returns `library` with the module `heading`, which listens to the run's sound.
     pub(crate) fn added(&self, library: &Library<Sensed>, microphones: &Microphones) -> Library<Sensed> {
         let mut library = library.clone();
         let Self { source, radius } = self.clone();

@@ -1,4 +1,5 @@
-//! The module `sensors`: readings of the robot, for modules that do not see its output, such as child processes.
+//! The module `sensors`: publishes readings of the robot, for modules without access to its output, such as child
+//! processes.
 
 use mdle_engine::{Declare, Fault, Module, Out, Relevance, Turn};
 use mdle_runtime::capability::{Bumpers as _, SonarRing as _};
@@ -49,7 +50,7 @@ impl Module<Sensed> for Sensors {
         turn.publish(self.bumper, turn.y.pressed());
         for (sonar, out) in &self.ranges {
             if let Some(ping) = turn.y.pings(*sonar).newest_first().next() {
-                // Without an echo nothing is near.
+                // No echo means that nothing is near.
                 turn.publish(*out, ping.range.unwrap_or(Meters(f64::INFINITY)));
             }
         }

@@ -17,7 +17,7 @@ use crate::route::{LandmarkMap, LandmarkPlace};
 /// Maximum size of the file, in bytes.
 const LARGEST: u64 = 1_000_000;
 
-/// The file as written.
+/// A file of landmarks, as written.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct Landmarks {
@@ -31,12 +31,12 @@ struct Landmark {
     name: Spanned<String>,
     /// Direction of the landmark's first axis on the floor.
     axis: Spanned<String>,
-    /// Place on the floor of a robot that is at the landmark.
+    /// Floor position of a robot that is at the landmark.
     place: Option<Spanned<String>>,
     /// File of the landmark's map, relative to the folder of this file; `None` if it has no map.
     map: Option<PathBuf>,
-    /// Pose, in the axes of the map, of a robot that is at the landmark and heads along its first axis; `None` for the
-    /// default pose.
+    /// Pose, in map coordinates, of a robot that is at the landmark and heads along the landmark's first axis; `None`
+    /// for the default pose.
     at: Option<Spanned<String>>,
 }
 
@@ -44,7 +44,7 @@ impl Landmarks {
     /// Reads the file. Unless `is_named` is `true`, the file may be missing.
     ///
     /// # Errors
-    /// Fails with a sentence if the file cannot be read, has errors, or names a landmark that the graph does not
+    /// Fails with a message if the file cannot be read, has errors, or names a landmark that the graph does not
     /// contain.
     pub(super) fn read(file: &Path, is_named: bool, known: &[&str]) -> Result<Self, String> {
         let shown = file.display();
@@ -57,7 +57,7 @@ impl Landmarks {
         Self::parse(&text, known).map_err(|(line, sentence)| format!("{shown}:{line}: {sentence}"))
     }
 
-    /// Reads the text of the file; an error contains the number of its line.
+    /// Reads the text of the file; an error contains its line number.
     fn parse(text: &str, known: &[&str]) -> Result<Self, (usize, String)> {
         let line = |place: usize| text.get(..place).unwrap_or_default().matches('\n').count() + 1;
         let read: Result<Self, _> = toml::from_str(text);
@@ -93,8 +93,8 @@ impl Landmarks {
         Ok(landmarks)
     }
 
-    /// Reads the maps of the landmarks. `file` is the file of landmarks; `begins` is the direction of the axis, in
-    /// degrees, of the landmark at which the route begins.
+    /// Reads the maps of the landmarks. `file` is the file of landmarks; `begins` is the direction, in degrees, of the
+    /// first axis of the landmark at which the route begins.
     ///
     /// # Errors
     /// Fails if a map cannot be read.
@@ -110,7 +110,8 @@ impl Landmarks {
         maps.collect()
     }
 
-    /// Returns the places of the landmarks that have one, for a route that begins at a landmark with this axis.
+    /// Returns the known places of landmarks, turned for a route that begins at a landmark whose first axis has the
+    /// direction `begins`, in degrees.
     pub(super) fn places(&self, begins: f64) -> Vec<LandmarkPlace> {
         let (sin, cos) = libm::sincos(Radians::from_degrees(begins).0);
         let places = self.landmark.iter().filter_map(|landmark| {

@@ -1,4 +1,4 @@
-//! `mdle navigate`: drives from one landmark to another by the plans of a graph (docs/src/navigation.md).
+//! `mdle navigate`: drives from one landmark to another with the plans of a graph (docs/src/navigation.md).
 
 mod landmarks;
 
@@ -22,7 +22,7 @@ use landmarks::Landmarks;
 /// Name of the file of landmarks beside a graph.
 const LANDMARKS: &str = "landmarks.toml";
 
-/// Drives from one landmark to another with these modules; returns the exit status of the run.
+/// Drives from one landmark to another with the modules in `library`; returns the exit status of the run.
 ///
 /// # Errors
 /// Fails if there is no route, or if a plan on it cannot be run.

@@ -16,8 +16,8 @@ pub(crate) struct Edge {
 pub(crate) struct LandmarkGraph(Vec<Edge>);
 
 impl LandmarkGraph {
-    /// Returns the graph of labelled plans, given as pairs of a label, such as `Γ_from^to`, and the name of its plan. A
-    /// plan whose label does not name two landmarks is not an edge.
+    /// Returns the graph of labelled plans. Each pair contains a label, such as `Γ_from^to`, and the name of the plan
+    /// with this label. A plan whose label does not name two landmarks is not an edge.
     pub(crate) fn of(labels: Vec<(String, String)>) -> Self {
         let edge = |(label, plan): (String, String)| {
             let (from, to) = label.strip_prefix("Γ_")?.split_once('^')?;

@@ -13,24 +13,26 @@ use crate::failure::{self, Failure};
 
 /// Name of the plan of a look around.
 pub(super) const LOOK: &str = "LookAround";
-/// Number of steps of 10 cm, to either side of the expected pose, in which a robot that has arrived is searched.
+/// Maximum distance of the search from the expected pose of a robot that has arrived, in steps of 10 cm along each
+/// axis.
 const WAYS: i16 = 6;
-/// Margin by which the score of another landmark has to exceed that of the expected one to refute that the robot is
-/// there.
+/// Minimum margin by which another landmark's score must exceed the score of the expected landmark to show that the
+/// robot is not at the expected landmark.
 const MARGIN: f64 = 0.6;
 
 /// The map of a landmark.
 pub(crate) struct LandmarkMap {
     /// Name of the landmark.
     pub(crate) name: String,
-    /// Direction of the landmark's first axis from that of the landmark where the route begins, in degrees.
+    /// Angle, in degrees, from the first axis of the landmark where the route begins to the first axis of this
+    /// landmark.
     pub(crate) turned: f64,
-    /// Pose in the axes of the map of a robot that is at the landmark and heads along its first axis.
+    /// Pose, in map coordinates, of a robot that is at the landmark and heads along the landmark's first axis.
     pub(crate) at: Pose,
     pub(crate) map: SavedMap,
 }
 
-/// The compiled plan of a look around, and the maps by which landmarks are recognized.
+/// The compiled plan of a look around, and the maps with which landmarks are recognized.
 pub(crate) struct Look {
     pub(crate) machine: Machine,
     pub(crate) input: Input,
@@ -73,7 +75,7 @@ pub(super) struct Heard {
 pub(super) struct Stand {
     /// Offset of the robot from its expected pose in the landmark's map, along the axes of the map.
     pub(super) off: (Meters, Meters),
-    /// Angle by which odometry has turned the axes of the floor since the route began.
+    /// Heading drift of odometry since the route began.
     pub(super) drift: Radians,
 }
 
@@ -83,7 +85,7 @@ impl Heard {
     pub(super) fn at(expected: &str, driven: Option<&Sensed>) -> Self {
         let mut order = PingOrder::new(Pose::ORIGIN);
         if let Some(y) = driven {
-            // Pings on the way there are of other places.
+            // Pings that were heard on the way there belong to other places.
             order.take(y);
         }
         let has_driven = driven.is_some();
@@ -106,16 +108,16 @@ impl Heard {
         self.pings.extend(self.order.take(y));
     }
 
-    /// Returns the position of the robot at the landmark. `drift` is the approximate angle by which odometry has turned
-    /// the axes of the floor.
+    /// Returns the position of the robot at the landmark. `drift` is the approximate heading drift of odometry.
     ///
     /// # Errors
-    /// Fails with a sentence if the robot is not at the landmark, or if no sonar heard anything.
+    /// Fails with a message if the robot is not at the landmark, or if no sonar heard anything.
     pub(super) fn stand(&self, maps: &[LandmarkMap], drift: Radians) -> Result<Stand, String> {
         let expected = Printable(&self.expected);
         let pings: Vec<GridPing> = self.pings.iter().map(|ping| self.around_the_robot(ping)).collect();
         let fits = maps.iter().filter_map(|landmark| {
-            // Odometry knows the axes of all landmarks once it knows those of one.
+            // After driving, odometry gives the axes of all landmarks. A robot that was placed heads along the first
+            // axis of the landmark at which it is.
             let turned = if self.has_driven { landmark.turned } else { 0.0 };
             let axis = Radians::from_degrees(turned).0 + drift.0;
             let near = Pose { theta: Radians(landmark.at.theta.0 - axis), ..landmark.at };
@@ -139,7 +141,7 @@ impl Heard {
         Ok(Stand { off, drift: Radians(axis - Radians::from_degrees(*turned).0).wrapped() })
     }
 
-    /// Returns a ping with its position relative to the robot, about which a search rotates.
+    /// Returns a ping relative to the robot's position, because the search rotates pings about the origin.
     fn around_the_robot(&self, ping: &GridPing) -> GridPing {
         GridPing { x: ping.x - self.here.x.0, y: ping.y - self.here.y.0, ..*ping }
     }

@@ -1,5 +1,5 @@
 //! Routes between landmarks: the graph of plans, the legs of a route, the look around at a landmark, the reckoning by
-//! odometry, and the pilot that drives them.
+//! odometry, and the pilot that drives the legs.
 
 mod graph;
 mod look;
@@ -23,9 +23,9 @@ pub(crate) use reckoning::LandmarkPlace;
 /// A route that has been checked.
 pub(crate) struct Route {
     pub(crate) legs: Vec<Leg>,
-    /// The look around at landmarks that have maps; `None` if none has one.
+    /// The look around at landmarks that have maps; `None` if no landmark has a map.
     pub(crate) look: Option<Look>,
-    /// The places of the landmarks for which they are known.
+    /// The known places of landmarks.
     pub(crate) places: Vec<LandmarkPlace>,
 }
 

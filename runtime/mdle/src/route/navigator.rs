@@ -1,4 +1,4 @@
-//! The pilot of a route: an engine that drives one plan after the other, from landmark to landmark.
+//! The pilot of a route: an engine that runs one plan after the other, from landmark to landmark.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -44,14 +44,14 @@ struct Navigator<'l, A: EngineAlphabet> {
     /// Echoes of the current look around; `None` if the robot does not look around.
     heard: Option<Heard>,
     reckoning: Reckoning<'l>,
-    /// Angle by which odometry has turned the axes of the floor, as measured at the last landmark with a map.
+    /// Heading drift of odometry, as measured at the last landmark with a map.
     drift: Radians,
-    /// Continuation of the run after the last turn, if a plan has ended in it.
+    /// Continuation of the run after the last turn; relevant if a plan ended in that turn.
     after: AfterPlan,
     messages: Vec<String>,
 }
 
-/// Drives a route of at least one leg, with these modules.
+/// Drives a route of at least one leg, with the modules in `library`.
 ///
 /// # Errors
 /// Fails if a plan cannot be loaded.
@@ -98,9 +98,9 @@ fn ready<A: EngineAlphabet>(leg: &Leg, target: &Arc<Target>) -> Result<ReadyLeg<
 }
 
 impl<A: EngineAlphabet> ReadyLeg<A> {
-    /// Returns the plan of the leg for a robot with this heading by odometry, which has turned the axes of the floor by
-    /// `drift`. The plan is compiled for this heading, because direction 0 of a plan that begins during a run is the
-    /// heading with which it begins. Its texts are those that were read before the run.
+    /// Returns the plan of the leg for a robot with this heading by odometry, whose heading drift is `drift`. The plan
+    /// is compiled for this heading, because direction 0 of a plan that begins during a run is the heading with which
+    /// it begins. The texts of the plan are those that were read before the run.
     fn plan_at(&self, heading: Radians, drift: Radians) -> Result<StoredPlan<A>, String> {
         let turned = libm::round((self.turned + drift.degrees() - heading.degrees()) * 100.0) / 100.0;
         let name = &self.plan.name;
@@ -122,7 +122,7 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         look: Option<&'l ReadyLook<'l, A>>,
         places: &'l [LandmarkPlace],
     ) -> Self {
-        // A leg that is over cannot go on.
+        // No trial: the engine cannot return to a leg that has ended.
         engine.plans_mut().set_trial(Nanos::ZERO);
         let (legs, reckoning, drift) = (legs.iter().collect(), Reckoning::new(places), Radians(0.0));
         let after = AfterPlan::Ends;
@@ -145,10 +145,10 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Some(&look.plan)
     }
 
-    /// Begins the next plan after a plan is over; returns `true` if there is another one.
+    /// Begins the next plan after a plan has ended; returns `false` if there is no next plan.
     ///
     /// # Errors
-    /// Fails with a sentence if the robot is not where it should be, or if the next plan cannot begin.
+    /// Fails with a message if the robot is not where it should be, or if the next plan cannot begin.
     fn goes_on(&mut self, y: &Sensed, transitions: &Transitions) -> Result<bool, String> {
         match self.heard.take() {
             Some(heard) => self.has_looked(&heard, transitions)?,
@@ -165,8 +165,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(true)
     }
 
-    /// Notes that the plan of a leg is over; returns the plan of the look around, if there is one. Without one, no
-    /// other landmark may be nearer by odometry.
+    /// Ends a leg, and returns the plan of the look around at its end. Without a look around, checks that no other
+    /// landmark is nearer by odometry, and returns `None`.
     fn arrives(&mut self, y: &Sensed, transitions: &Transitions) -> Result<Option<&'l StoredPlan<A>>, String> {
         let Some(leg) = self.legs.pop_front() else { return Ok(None) };
         let Edge { from, to, plan } = &leg.edge;
@@ -180,10 +180,10 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(self.stands(to, Some(y)))
     }
 
-    /// Evaluates a look around: checks that the robot is where it should be, and updates the drift of its odometry.
+    /// Evaluates a look around: checks that the robot is where it should be, and updates the heading drift of odometry.
     ///
     /// # Errors
-    /// Fails with a sentence if the look around was interrupted, or if the robot is not at the landmark.
+    /// Fails with a message if the look around was interrupted, or if the robot is not at the landmark.
     fn has_looked(&mut self, heard: &Heard, transitions: &Transitions) -> Result<(), String> {
         let landmark = Printable(heard.expected());
         if let Some(cause) = self.cut_short(LOOK, transitions) {
@@ -192,7 +192,7 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         let maps = self.look.map_or(&[][..], |look| look.maps);
         let Stand { off: (x, y), drift } = heard.stand(maps, self.drift)?;
         let turned = Radians(drift.0 - self.drift.0).wrapped().degrees();
-        // Minus zero is zero.
+        // Adding zero removes the sign of a negative zero.
         let [x, y] = [x, y].map(|metres| libm::round(metres.0 * 100.0) / 100.0 + 0.0);
         let turned = libm::round(turned * 10.0) / 10.0 + 0.0;
         let place = format!("{x:.2} m and {y:.2} m from its place, headings {turned:.1} degrees off");
@@ -202,8 +202,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(())
     }
 
-    /// Returns the operands of the plan's own condition that ended the plan of an edge early; `None` if its last
-    /// element ended it.
+    /// Returns the operands of the plan's own condition if this condition ended the plan of an edge; `None` if the plan
+    /// ended with its last element.
     fn cut_short(&self, edge: &str, transitions: &Transitions) -> Option<String> {
         let (last, operands) = transitions.iter().last()?;
         let plan = self.engine.machine()?.plan();

@@ -1,4 +1,5 @@
-//! The place of a robot on the floor by odometry, which tells landmarks without maps apart (docs/src/navigation.md).
+//! Dead reckoning: the floor position of the robot by odometry, which distinguishes landmarks without maps
+//! (docs/src/navigation.md).
 
 use mdle_runtime::{Meters, Pose, Printable, Radians};
 
@@ -7,11 +8,11 @@ use mdle_runtime::{Meters, Pose, Printable, Radians};
 pub(crate) struct LandmarkPlace {
     /// Name of the landmark.
     pub(crate) name: String,
-    /// Place in axes that are turned as the first landmark of the route is.
+    /// Floor position, in axes parallel to those of the first landmark of the route.
     pub(crate) at: (Meters, Meters),
 }
 
-/// The last landmark at which the robot was, and what odometry measured there.
+/// The last landmark at which the robot was, and the pose that odometry measured there.
 #[derive(Debug)]
 pub(super) struct Reckoning<'p> {
     places: &'p [LandmarkPlace],
@@ -25,16 +26,16 @@ impl<'p> Reckoning<'p> {
         Self { places, last: None }
     }
 
-    /// Notes that the robot is at a landmark, with this pose by odometry.
+    /// Records that the robot is at a landmark, with this pose by odometry.
     pub(super) fn is_at(&mut self, landmark: &str, here: Pose) {
         self.last = self.place(landmark).map(|place| (place.at, here));
     }
 
-    /// Checks that no landmark is nearer to the robot than the expected one. `drift` is the angle by which odometry
-    /// has turned the axes of the floor. Without the places of this landmark and of the last one nothing is checked.
+    /// Checks that no landmark is nearer to the robot than the expected one. `drift` is the heading drift of odometry.
+    /// Checks nothing if the place of this landmark or of the last one is unknown.
     ///
     /// # Errors
-    /// Fails with a sentence that names the landmark at which the robot is.
+    /// Fails with a message that names the landmark at which the robot is.
     pub(super) fn check(&self, expected: &str, here: Pose, drift: Radians) -> Result<(), String> {
         let (Some((last, before)), Some(place)) = (self.last, self.place(expected)) else { return Ok(()) };
         let (sin, cos) = libm::sincos(drift.0);

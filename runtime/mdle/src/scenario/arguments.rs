@@ -9,7 +9,7 @@ use mdle_host::{Program, Quantity, determining, is_record, output_format, quoted
 use crate::arguments::Run;
 use crate::failure::Failure;
 
-/// Name of the command without an executable.
+/// Name of the command if no executable contains the scenario.
 const MDLE: &str = "mdle run SCENARIO.toml";
 
 /// The options of a scenario.
@@ -34,10 +34,11 @@ pub(super) struct Options {
 }
 
 impl Options {
-    /// Reads the options of a scenario, which the executable `program` contains, or `mdle` reads.
+    /// Reads the options of a scenario. `program` is the executable that contains the scenario; `None` if `mdle` reads
+    /// it from a file.
     ///
     /// # Errors
-    /// Fails if an option is unknown, has a wrong value, or applies only to a plan, or if the options ask for
+    /// Fails if an option is unknown, has a wrong value, or applies only to a single plan, or if the options ask for
     /// help.
     pub(super) fn read(run: &Run, program: Option<Program<'_>>) -> Result<Self, Failure> {
         let of_a_plan = [
@@ -93,7 +94,7 @@ impl Options {
     /// Checks that all given options apply to a crowd.
     ///
     /// # Errors
-    /// Fails if an option does not.
+    /// Fails if an option does not apply to a crowd.
     pub(super) fn check_crowd(&self) -> Result<(), Failure> {
         let of_robots = [
             (self.log.as_deref().is_some_and(|log| !is_record(log)), "--log FILE.jsonl"),
@@ -109,7 +110,7 @@ impl Options {
     /// Checks that no given option applies only to a crowd.
     ///
     /// # Errors
-    /// Fails if an option does.
+    /// Fails if an option applies only to a crowd.
     pub(super) fn check_robots(&self) -> Result<(), Failure> {
         if self.threads.is_none() {
             return Ok(());

@@ -30,7 +30,8 @@ fn read(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let files = Files::of_system(path);
     Ready::read(&files, &Options::default())?;
     let contents = files.into_contents();
-    // What reads the copies finds each by its name, whatever links and folders there are.
+    // Checks that the scenario can be read from the copies alone, which are looked up by name, without resolving links
+    // and folders.
     Ready::read(&Files::inside(path, contents.clone()), &Options::default())?;
     let is_other = |(file, _): &(PathBuf, _)| file != path;
     let (mut others, mut own): (Vec<_>, Vec<_>) = contents.into_iter().partition(is_other);
@@ -54,7 +55,7 @@ pub fn run_scenario(program: Program<'_>, files: &[(&str, &[u8])]) -> ExitCode {
 
 fn run(program: Program<'_>, files: &[(&str, &[u8])]) -> Result<ExitCode, Failure> {
     let path = files.first().map_or("", |(path, _)| *path);
-    // The command of records is the one that repeats the run from the scenario's file.
+    // Records contain this command, which repeats the run from the scenario's file.
     let words = ["mdle", "run", path].map(OsString::from).into_iter().chain(std::env::args_os().skip(1));
     let Asked::Run(arguments) = parse(words.collect())? else { return Ok(ExitCode::SUCCESS) };
     let options = Options::read(&arguments, Some(program))?;

@@ -28,13 +28,13 @@ pub(super) struct ScenarioText {
     pub(super) period: Option<At<String>>,
     #[serde(default)]
     pub(super) link: LinkText,
-    /// The robots, the first of which moves first.
+    /// The robots, in the order in which they move.
     #[serde(default)]
     pub(super) robot: Vec<RobotText>,
     /// Plans that robots send each other.
     #[serde(default)]
     pub(super) sent_plan: Vec<SentPlanText>,
-    /// A crowd, which replaces robots with names; `None` if the scenario has none.
+    /// A crowd instead of robots with names; `None` if the scenario has no crowd.
     pub(super) crowd: Option<CrowdText>,
 }
 
@@ -80,7 +80,7 @@ pub(super) struct RobotText {
     pub(super) seed: Option<At<u64>>,
     /// Folder of the paths that the plan replays, relative to the folder of the scenario.
     pub(super) paths: Option<At<PathBuf>>,
-    /// Name of the path that the way back from each `path` and `Follow` replaces.
+    /// Name of the path to replace by the way back after each `path` and `Follow`.
     pub(super) records: Option<At<String>>,
     /// Time at which the robot's program is killed.
     pub(super) killed: Option<At<String>>,
@@ -113,7 +113,7 @@ pub(super) struct SentPlanText {
 pub(super) struct ScenarioError {
     /// Byte range in the file; `None` for the whole file.
     pub(super) place: Option<Range<usize>>,
-    /// Description of the error, as a sentence.
+    /// Description of the error.
     pub(super) message: String,
     /// Text to type instead; empty if there is none.
     pub(super) help: String,
@@ -130,13 +130,13 @@ impl ScenarioError {
         Self { place: None, message: message.into(), help: String::new() }
     }
 
-    /// Appends help to the error.
+    /// Sets the help text of the error.
     pub(super) fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
 }
 
-/// Reads a time between these limits, in seconds.
+/// Reads a time between the limits `least` and `most`, in seconds.
 pub(super) fn duration(text: &At<String>, least: f64, most: f64) -> Result<Duration, ScenarioError> {
     let [least, most] = [least, most].map(Duration::from_secs_f64);
     let read = Quantity::duration(text.get_ref(), "s", least, most);

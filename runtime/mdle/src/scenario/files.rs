@@ -1,4 +1,4 @@
-//! The files that a scenario reads: those of the system, or copies of them inside an executable.
+//! The files that a scenario reads: those of the file system, or copies inside an executable.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -27,7 +27,7 @@ pub(super) struct Files {
 }
 
 impl Files {
-    /// Returns the files of the system for the scenario in the file at `path`.
+    /// Returns the files of the file system, for the scenario in the file at `path`.
     pub(super) fn of_system(path: &Path) -> Self {
         Self { path: path.to_owned(), contents: RefCell::default(), texts: OnceCell::new(), are_inside: false }
     }
@@ -47,7 +47,7 @@ impl Files {
         self.path.with_file_name("").join(name)
     }
 
-    /// Returns `true` if there is a file at this path.
+    /// Returns `true` if there is a file at `path`.
     pub(super) fn exists(&self, path: &Path) -> bool {
         if self.are_inside { self.contents.borrow().contains_key(path) } else { path.exists() }
     }
@@ -97,7 +97,7 @@ impl Files {
     }
 
     /// Keeps the files of a plan that has been compiled, and prints its diagnostics. Does neither for a plan inside an
-    /// executable, because the build has done so.
+    /// executable, because the build has done both.
     pub(super) fn compiled(&self, input: &Input, diagnostics: &[Diagnostic]) {
         if !self.are_inside {
             let files = input.files().map(Path::to_owned).zip(input.texts().map(|text| text.as_bytes().to_vec()));

@@ -32,7 +32,7 @@ impl Fleet {
     /// needs.
     ///
     /// # Errors
-    /// Fails with a sentence if a module is refused.
+    /// Fails with a message if a module is refused.
     pub(super) fn new(mut scenario: Scenario, library: &Library<Sensed>, are_recorded: bool) -> Result<Self, String> {
         let members = std::mem::take(&mut scenario.members);
         let names: Vec<&str> = members.iter().map(|member| member.name.as_str()).collect();

@@ -34,7 +34,7 @@ pub(super) struct Runner {
     plan_number: u64,
     killed: Option<Nanos>,
     recorder: Option<WayRecorder>,
-    /// The path that was recorded in the previous turn, in place of an earlier one; `None` if none was.
+    /// The path recorded in the previous turn, which replaces an earlier path; `None` if no path was recorded.
     replaced: Option<StoredPath>,
     /// Ears of the robot, and the microphones through which the module `heading` gets their samples; `None` for a robot
     /// without ears.
@@ -43,7 +43,7 @@ pub(super) struct Runner {
     sends: VecDeque<SentPlan>,
 }
 
-/// State of a robot of a scenario: driven or not.
+/// State of a robot in a scenario.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Standing {
     /// The robot's plan runs.
@@ -52,7 +52,7 @@ pub(super) enum Standing {
     Over,
     /// The robot's program was killed.
     Killed,
-    /// Sentence about the fault that has stopped the robot.
+    /// A fault has stopped the robot; contains the message about the fault.
     Failed(String),
 }
 
@@ -62,7 +62,7 @@ pub(super) struct MemberTurn {
     pub(super) lines: Vec<String>,
     /// Number of the atom's state, and its law; `None` if no law was applied.
     pub(super) law: Option<(u64, String)>,
-    /// Name and text of the path that was recorded in this turn; `None` if none was.
+    /// Name and text of the path recorded in this turn; `None` if no path was recorded.
     pub(super) path: Option<(&'static str, String)>,
     /// `true` if a plan has replaced another one in this turn.
     pub(super) begins: bool,
@@ -76,7 +76,7 @@ impl Runner {
     /// Returns a robot before its first turn.
     ///
     /// # Errors
-    /// Fails with a sentence if a module is refused.
+    /// Fails with a message if a module is refused.
     pub(super) fn new(
         member: Member,
         air: Air,
@@ -204,7 +204,7 @@ impl Runner {
             Err(PilotFault::Panicked(message)) => self.fails(format!("a panic, which is a bug: {message}")),
         }
         made.changes = self.engine.take_changes();
-        // The path that was recorded in the previous turn is part of this turn's output.
+        // The path recorded in the previous turn is part of this turn's output.
         let replaced = self.replaced.take();
         made.changes.extend(replaced.map(|StoredPath { name, setpoints }| Change::Path {
             name: name.to_owned(),
@@ -264,13 +264,14 @@ impl Runner {
 }
 
 impl Standing {
-    /// Returns a few words about a robot at the end of a run.
+    /// Returns a short description of the robot's state at the end of a run. `law` is the law that still runs; `None`
+    /// if no law runs.
     pub(super) fn words(&self, law: Option<&str>) -> String {
         let mut words = match self {
             Self::Drives => "still runs".to_owned(),
             Self::Over => "plan over".to_owned(),
             Self::Killed => "killed".to_owned(),
-            // Help follows the sentence in lines of its own.
+            // The help text follows the message on separate lines.
             Self::Failed(sentence) => format!("failed: {}", sentence.lines().next().unwrap_or_default()),
         };
         if let (Self::Drives, Some(law)) = (self, law) {

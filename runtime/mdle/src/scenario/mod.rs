@@ -1,4 +1,4 @@
-//! `mdle run SCENARIO.toml`: several robots in one world and one process (docs/src/many_robots.md).
+//! `mdle run SCENARIO.toml`: runs several robots in one world and one process (docs/src/many_robots.md).
 //!
 //! The executable of a scenario runs the same functions on copies of the scenario's files ([`embedded`]).
 
@@ -44,7 +44,7 @@ pub fn is_scenario(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension == "toml")
 }
 
-/// Runs a scenario with these modules in each robot; returns the exit status.
+/// Runs a scenario with the modules in `library` in each robot; returns the exit status.
 ///
 /// # Errors
 /// Fails if the scenario cannot be run.

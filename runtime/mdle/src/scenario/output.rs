@@ -48,7 +48,7 @@ impl Output {
     /// Opens the files that the options name.
     ///
     /// # Errors
-    /// Fails with a sentence if a file cannot be written.
+    /// Fails with a message if a file cannot be written.
     pub(super) fn open(options: &Options, scenario: &Scenario) -> Result<Self, String> {
         let table = |path: &Option<PathBuf>| path.as_deref().map(Table::create).transpose();
         let title = setup(scenario);
@@ -150,7 +150,7 @@ impl Output {
         self.text(&format!("{}  {robot}: {line}", Clocked(t)));
     }
 
-    /// Writes the lines of a message of the report. It is no error if the reader has closed the pipe.
+    /// Writes a message to the report. A closed pipe is not an error.
     pub(super) fn text(&mut self, message: &str) {
         for line in message.lines() {
             if let Err(error) = writeln!(self.out, "{}", Printable(line))
@@ -175,7 +175,7 @@ impl Output {
     /// Writes the pictures, and all buffered lines of the files.
     ///
     /// # Errors
-    /// Fails with a sentence if a file could not be written.
+    /// Fails with a message if a file could not be written.
     pub(super) fn close(mut self) -> Result<(), String> {
         let pictures = [
             self.plot.take().map(|(path, drawing)| (path, drawing.picture())),
@@ -201,14 +201,14 @@ impl Output {
     }
 }
 
-/// Describes a scenario for titles.
+/// Returns a description of a scenario for titles.
 fn setup(scenario: &Scenario) -> String {
     let robots = scenario.members.iter().map(|member| format!("{} ({})", member.name, member.body));
     let seed = scenario.seed.map_or_else(|| "no errors".to_owned(), |seed| format!("seed {seed}"));
     format!("world {}, {}, {seed}", scenario.world_name, robots.collect::<Vec<_>>().join(", "))
 }
 
-/// Replaces the file of a path in this folder. A simultaneous reader gets the old path or the new path.
+/// Replaces the file of a path in `folder`. A concurrent reader gets either the old path or the new path.
 fn record(folder: &Path, name: &str, text: &str) -> Result<(), String> {
     let file = folder.join(if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") });
     let unfinished = file.with_extension(format!("{}.tmp", std::process::id()));

@@ -1,4 +1,4 @@
-//! The records of the robots of a scenario: one file for each robot, which commands read like the record of any run.
+//! The records of the robots of a scenario: one file for each robot, in the same format as the record of any run.
 
 use std::fs;
 use std::io;
@@ -32,7 +32,7 @@ impl Records {
     /// command that repeats the run.
     ///
     /// # Errors
-    /// Fails with a sentence if a record cannot be written; in this case, the records that were created are removed.
+    /// Fails with a message if a record cannot be written; in this case, the records that were created are removed.
     pub(super) fn create(log: &Path, scenario: &Scenario, command: &str) -> Result<Self, String> {
         let mut created = Self(Vec::new());
         for member in &scenario.members {
@@ -61,7 +61,7 @@ impl Records {
     /// Writes a turn of a robot.
     ///
     /// # Errors
-    /// Fails with a sentence if the record cannot be written.
+    /// Fails with a message if the record cannot be written.
     pub(super) fn turn(&mut self, robot: &str, turn: RobotTurn<'_>) -> Result<(), String> {
         let number = turn.number;
         self.write(robot, |record, last| {
@@ -70,11 +70,11 @@ impl Records {
         })
     }
 
-    /// Completes the record of a robot with the output `y` at time `t`, unless it is complete, with the cause of its
-    /// end.
+    /// Completes the record of a robot, unless it is complete already, with the output `y` at time `t` and the cause of
+    /// the end.
     ///
     /// # Errors
-    /// Fails with a sentence if the record cannot be written.
+    /// Fails with a message if the record cannot be written.
     pub(super) fn end(&mut self, robot: &str, (y, t): (&Sensed, Nanos), cause: &str) -> Result<(), String> {
         self.write(robot, |record, last| record.take().map_or(Ok(()), |record| record.end(*last, (y, t), cause)))
     }
@@ -92,11 +92,11 @@ impl Records {
 
 /// Removes the file of a record that contains no run.
 pub(super) fn remove(path: &Path) {
-    // The error that is reported is the one that kept the run from beginning.
+    // Best effort: the error that prevented the run is reported instead.
     let _ = fs::remove_file(path);
 }
 
-/// Returns the sentence about a file that cannot be written.
+/// Returns the error message for a file that cannot be written.
 pub(super) fn unwritten(path: &Path, error: &io::Error) -> String {
     format!("{} cannot be written: {error}", path.display())
 }

@@ -22,7 +22,7 @@ pub(super) struct SentPlan {
     pub(super) when: When,
 }
 
-/// Returns the plans that the robot of this name sends, in the order of their times.
+/// Returns the plans that the robot `own` sends, in the order of their times.
 ///
 /// # Errors
 /// Fails if a value is invalid, or if a file cannot be read.

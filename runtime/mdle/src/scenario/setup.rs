@@ -173,7 +173,7 @@ impl Scenario {
         Ok((ears.ok_or_else(|| silent.help(help))?, radius))
     }
 
-    /// Returns the pose at which a robot whose nominal pose is `start` begins.
+    /// Returns the initial pose of a robot whose nominal pose is `start`.
     fn begins(&self, text: &RobotText, make: &Make, start: Pose, seed: u64) -> Result<Pose, ScenarioError> {
         let Some(noise) = &text.start_noise else { return Ok(start) };
         let read = StartNoise::read(noise.get_ref());
@@ -186,8 +186,8 @@ impl Scenario {
 /// A plan with the names and the texts of its files, the plan's own file first.
 pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>);
 
-/// Compiles and loads the plan of a robot, or the robot's part of a group's plan. `robot` is the robot with the names
-/// of all robots of the scenario; `None` for a crowd.
+/// Compiles and loads the plan of a robot, or the robot's part of a group's plan. `robot` contains the robot and the
+/// names of all robots of the scenario; `None` for a crowd.
 pub(super) fn plan(
     file: &At<PathBuf>,
     plan_name: Option<&At<String>>,
@@ -221,7 +221,7 @@ pub(super) fn plan(
     Ok((Arc::new(load::load(&machine, &input.sources, &target.alphabet)?), texts(&input)))
 }
 
-/// Returns the error at its place in the scenario, unless it is in the plan's own file.
+/// Returns the error with its place in the scenario, unless the error is in the plan's own file.
 fn placed(place: Range<usize>, error: InputError) -> SetupError {
     if let InputError::Faulty(_) | InputError::NamedAt { .. } = error {
         return SetupError::Plan(error.into());
@@ -258,7 +258,7 @@ fn no_other_robot(other: &At<String>, own: &str, names: &[&str]) -> ScenarioErro
     ScenarioError::at(other.span(), message).help(format!("the other robots of the scenario are {}", others.join(", ")))
 }
 
-/// Returns the error for a robot that a plan names and that the scenario lacks.
+/// Returns the error for a robot that a plan names but the scenario lacks.
 fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError {
     let name = text.name.get_ref();
     if other == name {
@@ -270,7 +270,7 @@ fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError 
     ScenarioError::at(text.file.span(), message).help(format!("the robots of the scenario are {}", names.join(", ")))
 }
 
-/// Returns the world of this name or file, and its name.
+/// Returns the world with the name or the file `text`, and its name.
 pub(super) fn world(text: Option<&At<String>>, files: &Files) -> Result<(World, String), ScenarioError> {
     let Some(text) = text else {
         let world = World::parse("the empty floor", "");
@@ -303,7 +303,7 @@ pub(super) fn world(text: Option<&At<String>>, files: &Files) -> Result<(World, 
     Ok((world, name.clone()))
 }
 
-/// Returns the body of this name; the ideal body without a name.
+/// Returns the body called `text`; the ideal body for `None`.
 pub(super) fn body(text: Option<&At<String>>) -> Result<Body, ScenarioError> {
     let Some(text) = text else { return Ok(Body::Ideal) };
     let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == *text.get_ref());
@@ -337,7 +337,7 @@ fn latency(text: &At<String>) -> Result<(Nanos, Nanos), ScenarioError> {
     Ok((least, most))
 }
 
-/// Returns the path that is recorded, which must be a path that the plan replays.
+/// Returns the name of the path to record, which must be a path that the plan replays.
 fn recorded(text: &At<String>, replayed: &[&'static str]) -> Result<&'static str, ScenarioError> {
     let name = text.get_ref();
     replayed.iter().copied().find(|path| path == name).ok_or_else(|| {

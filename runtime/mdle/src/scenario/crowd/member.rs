@@ -30,7 +30,7 @@ impl Member {
         Self { robot, machine: None, input: Twist::default(), is_over: false, has_touched: false, way: 0.0, record }
     }
 
-    /// Returns a sentence about the error of the record, if any.
+    /// Returns the message about an error of the record, if any.
     pub(super) fn fault(&self) -> Option<&str> {
         self.record.as_ref().and_then(|record| record.fault())
     }
@@ -43,7 +43,7 @@ impl Member {
         self.robot.pose()
     }
 
-    /// Moves the robot for the period that ends at time `t`, among these other robots.
+    /// Moves the robot for the period that ends at time `t`, among the robots in `others`.
     pub(super) fn moves(&mut self, t: Nanos, others: &mut Others) {
         let before = self.pose();
         self.robot.swap_others(others);
@@ -58,7 +58,7 @@ impl Member {
         self.way += self.pose().distance(&before).0;
     }
 
-    /// Makes the turn of the plan at time `t`, with these other robots nearby.
+    /// Makes the turn of the plan at time `t`, with the robots in `others` nearby.
     pub(super) fn turn(&mut self, t: Nanos, plan: &Arc<Loaded<SimAlphabet>>, others: &mut Others) {
         self.robot.swap_others(others);
         let y = self.robot.senses();
@@ -90,7 +90,7 @@ impl Member {
     fn ends(&mut self) {
         self.is_over = true;
         self.input = Twist::default();
-        // A robot without a plan takes no more memory.
+        // Frees the memory of the plan.
         self.machine = None;
     }
 

@@ -1,5 +1,4 @@
-//! A crowd: very many robots in one world, which run the same plan, each in a state of its own
-//! (docs/src/many_robots.md).
+//! A crowd: many robots in one world that run the same plan, each with its own state (docs/src/many_robots.md).
 
 mod member;
 mod places;

@@ -50,13 +50,13 @@ impl Iterator for Places {
     }
 }
 
-/// Returns a square hall with room for this number of robots, at this distance from each other in metres.
+/// Returns a square hall with room for `robots` robots at a distance of `spacing` metres from each other.
 ///
 /// # Errors
 /// Never fails, as the text of the hall is valid.
 pub(super) fn hall(robots: u64, spacing: f64) -> Result<World, ScenarioError> {
     let rows = libm::ceil(libm::sqrt(robots as f64));
-    // A little more than the lattice, so that rounding loses no row.
+    // Slightly larger than the lattice, so that rounding does not remove a row.
     let side = (rows + 0.01) * spacing;
     let start = spacing / 2.0;
     let text = format!(

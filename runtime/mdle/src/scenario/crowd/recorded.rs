@@ -19,15 +19,15 @@ pub(super) struct RecordedMember {
     pub(super) transitions: Transitions,
     /// Number of the next turn.
     next: u64,
-    /// Sentence about the error that ended the record; `None` if there was no error.
+    /// Message about the error that ended the record; `None` if there was no error.
     fault: Option<String>,
 }
 
 impl RecordedMember {
-    /// Creates the record of the robot of this number: `run.mcap` becomes `run.17.mcap`.
+    /// Creates the record of robot `number`: for the log `run.mcap`, the record of robot 17 is `run.17.mcap`.
     ///
     /// # Errors
-    /// Fails with a sentence if the record cannot be written.
+    /// Fails with a message if the record cannot be written.
     pub(super) fn create(log: &Path, number: usize, begin: Begin) -> Result<Self, String> {
         let path = log.with_extension(format!("{number}.mcap"));
         let record = RobotRecord::create(&path, begin).map_err(|error| unwritten(&path, &error))?;
@@ -65,7 +65,7 @@ impl RecordedMember {
         remove(&self.path);
     }
 
-    /// Completes the record with the output `y` at time `t`, unless it is complete, with the cause of the end.
+    /// Completes the record, unless it is complete already, with the output `y` at time `t` and the cause of the end.
     pub(super) fn end(&mut self, (y, t): (&Sensed, Nanos), cause: &str) {
         let last = self.next.saturating_sub(1);
         let ended = self.record.take().map_or(Ok(()), |record| record.end(last, (y, t), cause));
@@ -74,7 +74,7 @@ impl RecordedMember {
         }
     }
 
-    /// Returns a sentence about the error that ended the record, if any.
+    /// Returns the message about the error that ended the record, if any.
     pub(super) fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }

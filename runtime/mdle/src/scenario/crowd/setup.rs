@@ -75,7 +75,7 @@ impl CrowdSetup {
     /// repeats the run.
     ///
     /// # Errors
-    /// Fails with a sentence if there are too many robots, or if a record cannot be written; in this case, the records
+    /// Fails with a message if there are too many robots, or if a record cannot be written; in this case, the records
     /// that were created are removed.
     pub(super) fn records(&self, log: &Path, command: &str) -> Result<Vec<RecordedMember>, String> {
         let count = self.robots.len();

@@ -21,7 +21,7 @@ impl Trail {
     /// Creates the file.
     ///
     /// # Errors
-    /// Fails with a sentence if the file cannot be created.
+    /// Fails with a message if the file cannot be created.
     pub(super) fn create(path: &Path) -> Result<Self, String> {
         let file = File::create(path).map_err(|error| format!("{} cannot be written: {error}", path.display()))?;
         let mut file = BufWriter::new(file);
@@ -48,7 +48,7 @@ impl Trail {
     /// Writes all buffered lines.
     ///
     /// # Errors
-    /// Fails with a sentence if not everything could be written.
+    /// Fails with a message if not everything could be written.
     pub(super) fn close(mut self) -> Result<(), String> {
         let written = self.written.and_then(|()| self.file.flush());
         written.map_err(|error| format!("{} cannot be written: {error}", self.path.display()))

@@ -2,8 +2,8 @@
 //!
 //! In each turn, robots that may touch each other form a group, which one thread handles. The thread moves the robots
 //! of the group one after the other, each among the current poses of the others in the group, and then makes the turns
-//! of their plans. Sonars detect all other robots at their poses at the beginning of the turn. So no result depends on
-//! the order of groups.
+//! of their plans. Sonars detect all other robots at their poses at the beginning of the turn. Therefore no result
+//! depends on the order of the groups.
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,12 +21,12 @@ use super::setup::CrowdSetup;
 
 /// Number of groups that a thread takes at a time.
 const TAKES: usize = 16;
-/// Number of robots for each thread below which an additional thread would not save time.
+/// Minimum number of robots per thread; with fewer robots, an additional thread would not save time.
 const FOR_A_THREAD: usize = 100;
 
 /// The robots of a crowd.
 pub(super) struct Turns {
-    /// The robots. One thread at a time locks each robot, so no thread waits.
+    /// The robots. Only one thread locks each robot in a turn, so no thread waits.
     members: Vec<Mutex<Member>>,
     plan: Arc<Loaded<SimAlphabet>>,
     threads: usize,
@@ -104,7 +104,7 @@ impl Turns {
         self.each().for_each(|mut member| member.stop(t));
     }
 
-    /// Returns a sentence about a record that could not be written, if any.
+    /// Returns the message about a record that could not be written, if any.
     pub(super) fn fault(&self) -> Option<String> {
         self.each().find_map(|member| member.fault().map(str::to_owned))
     }
@@ -171,7 +171,7 @@ impl Shared<'_> {
     /// Collects the robots of the group that robot `number` may touch, at their current poses.
     fn touch(&self, number: u32, group: &[u32], now: &[Footprint], Others { touched, .. }: &mut Others) {
         touched.clear();
-        // Most robots are alone.
+        // Most robots are alone in their group.
         if group.len() > 1 {
             self.near(number, self.turns.touches, |other, _| {
                 let place = group.binary_search(&(other as u32)).ok();
