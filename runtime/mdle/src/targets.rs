@@ -1,4 +1,4 @@
-//! The robots on which this program can run plans.
+//! The robots for which this program can run plans.
 
 use std::os::fd::AsFd as _;
 use std::path::Path;
@@ -43,7 +43,7 @@ pub(crate) struct LinkedTarget {
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
 
-/// Function that loads a plan of a file for a target, with the safety rules of its runs.
+/// Function that loads a plan for a target, with the safety rules of the plan's runs.
 type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
 
 /// Function that runs the plan of a machine on the outputs of a record; plans are observed if the last argument
@@ -58,7 +58,7 @@ pub(crate) trait Ready {
     /// Returns `true` if the plan reads attributes of modules.
     fn reads_modules(&self) -> bool;
 
-    /// Returns `true` if the plan reads an attribute of the module of this name.
+    /// Returns `true` if the plan reads an attribute of `module`.
     fn reads(&self, module: &str) -> bool;
 
     /// Returns the texts of the safety rules; `None` if there are no rules.
@@ -70,19 +70,19 @@ pub(crate) trait Ready {
     /// Fails if the plan names a robot that the link does not contain.
     fn link(&mut self, link: Option<LinkFile>) -> Result<(), Failure>;
 
-    /// Lets the way back from each `path` and `Follow` replace the path of this name in runs of the plan.
+    /// Sets the name of the path that runs of the plan replace by the way back after each `path` and `Follow`.
     ///
     /// # Errors
-    /// Fails if the plan replays no such path.
+    /// Fails if the plan does not replay the path.
     fn records(&mut self, path: Option<&str>) -> Result<(), Failure>;
 
     /// Sets the sound for the module `heading` in runs of the plan.
     fn hears(&mut self, hearing: Option<SoundInput>);
 
-    /// Runs the plan of this name, with these modules.
+    /// Runs the plan, which is called `name`, with the modules in `library`.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
 
-    /// Runs the plan of this name in a session, with these modules.
+    /// Runs the plan, which is called `name`, in a session, with the modules in `library`.
     fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: Seat) -> ExitCode;
 }
 
@@ -93,10 +93,10 @@ const LINKED: [LinkedTarget; 3] = [
     LinkedTarget::new::<mdle_sim::Target, mdle_sim::alphabet::Alphabet>(),
 ];
 
-/// Returns the robot of this name.
+/// Returns the robot called `name`.
 ///
 /// # Errors
-/// Fails with a sentence that lists the known names.
+/// Fails if this program has no such robot; the message lists the known names.
 pub(crate) fn linked(name: &str) -> Result<LinkedTarget, String> {
     if let Some(linked) = LINKED.iter().find(|linked| linked.name == name) {
         return Ok(*linked);
@@ -151,7 +151,7 @@ struct PlanFor<T, A: Alphabet> {
     link: Option<LinkFile>,
     /// Sound for the module `heading`; `None` without `--ears`.
     hearing: Option<SoundInput>,
-    /// Name of the path that the way back from each `path` and `Follow` replaces, with the maximum speeds of a path;
+    /// Name of the path to replace by the way back after each `path` and `Follow`, with the maximum speeds of a path;
     /// `None` if no path is recorded.
     records: Option<(&'static str, Twist)>,
     target: std::marker::PhantomData<fn() -> T>,
@@ -257,7 +257,7 @@ where
         let engine = |terms: &RunTerms| self.loading(name, library, terms, true);
         let supervisor = |terms: &RunTerms| {
             let guardian = self.safety.as_ref().map(|safety| safety.guardian(terms.period));
-            // A session is one run.
+            // A session has only one run, so the desk is still there.
             let desk = desk.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_else(|| Desk::with_hub().1);
             Box::new(Session::<A>::new(desk, guardian, terms, is_paused)) as _
         };

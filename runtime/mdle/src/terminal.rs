@@ -16,7 +16,7 @@ const END: &[u8] = b"\0\n";
 const NOTHING: &str = "\x1b[A\n";
 /// Maximum wait for the last report to be printed.
 const LAST: Duration = Duration::from_millis(500);
-/// Interval between two checks whether the run has ended, while waiting for a report of a watched attribute.
+/// Interval at which to check whether the run has ended, while waiting for a report of a watched attribute.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// A terminal that a session uses.
@@ -58,7 +58,7 @@ impl HeldTerminal {
         let _ = self.reports.write_all(END);
         let _ = self.printed.recv_timeout(LAST);
         if let Some(before) = self.before {
-            // The line that is being typed has changed how the terminal reads.
+            // Line editing has changed the settings of the terminal.
             let _ = tcsetattr(io::stdin(), OptionalActions::Now, &before);
         }
         let _ = writeln!(io::stderr());
@@ -69,8 +69,8 @@ impl Printing {
     /// Opens the terminal for typing, and starts threads that print the reports of the run and the hub.
     ///
     /// # Errors
-    /// Fails if the terminal cannot be used, or if the system cannot create the threads; reports of the run are
-    /// printed in any case.
+    /// Fails if the terminal cannot be used, or if the system cannot create the threads; reports of the run are printed
+    /// nevertheless.
     pub(crate) fn begin(self, hub: &Hub) -> io::Result<Terminal> {
         let (terminal, print): (_, Box<PrintAbove>) = match Terminal::open(hub.clone()) {
             Ok((terminal, print)) => (Ok(terminal), print),
@@ -104,6 +104,6 @@ impl Printing {
 }
 
 fn say(print: &Mutex<Box<PrintAbove>>, text: &str) {
-    // A terminal that has gone is not a reason to stop.
+    // A closed terminal is not a reason to stop.
     let _ = (print.lock().unwrap_or_else(PoisonError::into_inner))(text);
 }

@@ -7,7 +7,7 @@ use mdle_runtime::{Pose, Radians};
 /// Minimum distance between two recorded places, in metres. While the robot is closer to the last place, it counts as
 /// standing still.
 const APART: f64 = 0.01;
-/// Maximum number of places on either side of a place that are averaged with it.
+/// Maximum number of neighbouring places on either side with which a place is averaged.
 const SMOOTHED: usize = 2;
 /// Speed of the way back, in m/s.
 const SPEED: f64 = 0.5;
@@ -52,8 +52,8 @@ fn distance(one: &Place, other: &Place) -> f64 {
     libm::hypot(one[0] - other[0], one[1] - other[1])
 }
 
-/// Returns each place as the mean of the places around it. The number of places on either side is the same, so that the
-/// ends do not move.
+/// Returns each place as the mean of the places around it. The same number of places is used on either side, so that
+/// the ends do not move.
 fn smoothed(places: &[Place]) -> Vec<Place> {
     let mean = |number: usize| {
         let beside = SMOOTHED.min(number).min(places.len() - 1 - number);
@@ -103,7 +103,7 @@ impl Line {
     }
 }
 
-/// Writes the rows of a path along a line, from rest to full speed, which the path has at its end.
+/// Writes the rows of a path along a line, which begins at rest and ends at full speed.
 fn rows(line: &Line, frame: Radians) -> String {
     let (ramp, length) = (SPEED / RAMP, line.length());
     let on_ramp = RAMP * ramp * ramp / 2.0;

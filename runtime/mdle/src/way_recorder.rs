@@ -41,7 +41,7 @@ pub(crate) struct RecordedTurn<'t> {
 }
 
 impl WayRecorder {
-    /// Returns a recorder that replaces the path of this name, on a robot with these maximum speeds.
+    /// Returns a recorder that replaces the path `path`, on a robot with the maximum speeds `fastest`.
     pub(crate) fn new(path: &'static str, fastest: Twist) -> Self {
         Self { path, fastest, way: None, frame: None, store: None, replaced: None, recorded: 0 }
     }
@@ -59,7 +59,7 @@ impl WayRecorder {
     /// Takes a turn. If a recorded law has ended, replaces the path by the way back and returns its text.
     ///
     /// # Errors
-    /// Fails with a sentence if the way back is not a valid path.
+    /// Fails with a message if the way back is not a valid path.
     pub(crate) fn take(&mut self, turn: &RecordedTurn<'_>) -> Result<Option<String>, String> {
         let RecordedTurn { here, paths, law, has_changed } = turn;
         let frame = *self.frame.get_or_insert(Frame(here.theta));

@@ -24,7 +24,7 @@ pub(crate) struct Test {
     pub(crate) coverage: bool,
     /// Folder for pictures of the plans with counts.
     pub(crate) pictures: Option<PathBuf>,
-    /// File for the results as JUnit's XML.
+    /// File for the results in JUnit's XML format.
     pub(crate) junit: Option<PathBuf>,
     /// `true` if the results are printed as JSON.
     pub(crate) json: bool,
@@ -93,7 +93,7 @@ pub(crate) fn command() -> Command {
 
 /// Reads the arguments.
 pub(crate) fn read(matches: &ArgMatches) -> Test {
-    // A type with a sign, so that the message about a negative number has the range.
+    // A signed type, so that the message about a negative number contains the valid range.
     let count = |name: &str| matches.get_one::<i64>(name).map(|count| count.unsigned_abs());
     Test {
         files: matches.get_many("files").into_iter().flatten().cloned().collect(),

@@ -14,7 +14,7 @@ use super::subject::Subject;
 pub(super) enum Cause {
     /// The completion of a law.
     Completed,
-    /// Operands of interrupts, each with the number of its element and its own number.
+    /// Operands of interrupts, each as the number of its element and the number of the operand.
     Operands(Vec<(u32, u32)>),
     /// The interrupts of these scopes.
     Scopes(Vec<u32>),
@@ -48,10 +48,10 @@ pub(super) fn cause(text: &At<String>, subject: &Subject) -> Result<Cause, TestF
     Err(TestFileError::at(text.span(), message).help(format!("its operands are {listed}; a law ends by `{COMPLETED}`")))
 }
 
-/// Returns the part of the cause by which the plan can end.
+/// Restricts a cause to the elements at the end of the plan, which end the plan when they end.
 ///
 /// # Errors
-/// Fails if the cause ends only a part of the plan.
+/// Fails if no such element is left: the cause ends only a part of the plan.
 pub(super) fn ending(text: &At<String>, cause: Cause, subject: &Subject) -> Result<Cause, TestFileError> {
     let (cause, is_left) = match cause {
         Cause::Completed => {

@@ -7,7 +7,7 @@ use mdle_runtime::{Cause, Nanos, Pose, Transition, Words};
 /// The course of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Course {
-    /// The beginnings of atoms, each when its law was first applied.
+    /// The atoms that began, each recorded when its law was first applied.
     pub(super) began: Vec<Began>,
     /// All transitions.
     pub(super) steps: Vec<Step>,
@@ -56,18 +56,18 @@ pub(super) enum Ending {
     Over,
     /// The plan was not over at the end of the script, or at the limit of the run.
     Running,
-    /// Sentence about the fault that ended the run.
+    /// A fault ended the run; contains the message about the fault.
     Failed(String),
 }
 
-/// The first turn in which a state occurred that must never occur.
+/// The first turn in which a forbidden state occurred.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Breach {
     /// Number of the expectation.
     pub(super) number: usize,
     pub(super) turn: u64,
     pub(super) t: Nanos,
-    /// Number of the atom that ran in that turn; `None` if none did.
+    /// Number of the atom that ran in that turn; `None` if no atom ran.
     pub(super) atom: Option<u32>,
     /// The distance that was too short, in metres; `None` for any other state.
     pub(super) gap: Option<f64>,

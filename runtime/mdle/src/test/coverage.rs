@@ -18,8 +18,8 @@ pub(super) struct Coverage {
     pub(super) completed: Vec<u64>,
     /// For each operand of each element's interrupt, the numbers of evaluations in which it was false and true.
     pub(super) operands: Vec<Vec<[u64; 2]>>,
-    /// For each element, `true` if a single operand can fire its interrupt, so that all operands are false
-    /// while the element runs.
+    /// For each element, `true` if each operand alone fires its interrupt. All operands are then false while the
+    /// element runs.
     is_any: Vec<bool>,
     /// Number of the current atom; `None` before the plan begins, and once it is over.
     atom: Option<u32>,

@@ -1,4 +1,4 @@
-//! The coverage of a plan as a table: each element with its line, its counts and its operands.
+//! The coverage of a plan as a table: each element with its line, counts and operands.
 
 use std::fmt::Write as _;
 
@@ -17,8 +17,7 @@ pub(super) struct CoverageTable {
     plan: String,
     /// Number of atoms that began, and number of all atoms.
     atoms: [usize; 2],
-    /// Number of ways in which an element can end, by its interrupt or by completion, that occurred, and number of all
-    /// such ways.
+    /// Number of ways to end an element, by its interrupt or by completion, that occurred, and number of all ways.
     ends: [usize; 2],
     /// Number of operands that were both true and false, and number of all operands.
     operands: [usize; 2],

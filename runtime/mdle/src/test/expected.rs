@@ -42,11 +42,11 @@ pub(super) struct AtomsNamed {
     atoms: Vec<bool>,
 }
 
-/// A transition that has to be made.
+/// An expected transition.
 #[derive(Clone)]
 pub(super) struct ExpectedTransition {
     pub(super) from: Option<AtomsNamed>,
-    /// The atoms of which one must be entered: `Some(None)` for the end of the plan, `None` for any.
+    /// The atoms, one of which must be entered: `Some(None)` for the end of the plan, `None` for any atom or the end.
     pub(super) to: Option<Option<AtomsNamed>>,
     pub(super) by: Option<(String, Cause)>,
     pub(super) after: Option<Nanos>,
@@ -57,7 +57,8 @@ pub(super) struct ExpectedTransition {
 pub(super) enum Never {
     /// The robot is closer to an obstacle than this distance, in metres.
     Closer(f64),
-    /// One of the atoms runs while the condition is true; either may be absent.
+    /// One of `atoms` runs while `condition` is true. Without `atoms`, any atom counts; without `condition`, the state
+    /// is forbidden whenever one of `atoms` runs.
     While { words: String, atoms: Option<AtomsNamed>, condition: Option<Box<TestCondition>> },
 }
 
@@ -108,7 +109,7 @@ impl Expected {
     /// robot.
     ///
     /// # Errors
-    /// Fails with a sentence and a place if no run can meet an expectation.
+    /// Fails with a message and a place if no run can meet an expectation.
     pub(super) fn read(text: &ExpectText, subject: &Subject, is_script: bool) -> Result<Self, TestFileError> {
         let list = |list: &Option<At<Vec<At<String>>>>| {
             let list = list.as_ref().map(|list| {

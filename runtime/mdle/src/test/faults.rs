@@ -37,7 +37,7 @@ enum Fault {
 /// Reads a fault.
 ///
 /// # Errors
-/// Fails with a sentence if there is no such fault, or if one of its values is missing.
+/// Fails with a message if there is no such fault, or if one of its values is missing.
 pub(super) fn read(text: &FaultText) -> Result<TimedFault, TestFileError> {
     let FaultText { fault: name, from, until, sonar, range, percent } = text;
     let needs = |key: &str, example: &str| {
@@ -103,7 +103,7 @@ fn lasting(faults: &[TimedFault], t: Nanos) -> impl Iterator<Item = &Fault> {
 /// Applies the faults to the input and the battery before the exchange at time `t`; returns the input to send.
 ///
 /// # Errors
-/// Fails with a sentence if the robot does not answer.
+/// Fails with a message if the robot does not answer.
 pub(super) fn before(faults: &[TimedFault], robot: &mut Observed, input: Twist, t: Nanos) -> Result<Twist, String> {
     let mut input = input;
     for fault in lasting(faults, t) {

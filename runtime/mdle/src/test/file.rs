@@ -107,16 +107,16 @@ pub(super) struct ExpectText {
     pub(super) most_time: Option<At<String>>,
 }
 
-/// A transition that has to be made.
+/// An expected transition.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct TransitionText {
     pub(super) from: Option<At<String>>,
     pub(super) to: Option<At<String>>,
     pub(super) by: Option<At<String>>,
-    /// Time of the run before which it does not count.
+    /// Time of the run before which the transition does not count.
     pub(super) after: Option<At<String>>,
-    /// Time of the run up to which it has to be made.
+    /// Time of the run by which the transition must be made.
     pub(super) within: Option<At<String>>,
 }
 
@@ -158,7 +158,7 @@ impl TestText {
 pub(super) struct TestFileError {
     /// Byte range in the file; `None` for the whole file.
     pub(super) place: Option<Range<usize>>,
-    /// Description of the error, as a sentence.
+    /// Description of the error.
     pub(super) message: String,
     /// Text to type instead; empty if there is none.
     pub(super) help: String,
@@ -170,7 +170,7 @@ impl TestFileError {
         Self { place: Some(place), message: message.into(), help: String::new() }
     }
 
-    /// Appends help to the error.
+    /// Sets the help text of the error.
     pub(super) fn help(self, help: impl Into<String>) -> Self {
         Self { help: help.into(), ..self }
     }
@@ -179,7 +179,7 @@ impl TestFileError {
 /// Reads the text of a test file.
 ///
 /// # Errors
-/// Fails with a sentence without a place if the file cannot be read.
+/// Fails with a message, but without a place, if the file cannot be read.
 pub(super) fn text(path: &Path) -> Result<String, TestFileError> {
     let unread = |error: std::io::Error| TestFileError {
         place: None,

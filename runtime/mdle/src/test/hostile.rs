@@ -1,4 +1,4 @@
-//! Tests that any text in place of a test file is read or refused, and that a refusal names a place in the text.
+//! Tests that the parser of test files accepts or refuses any text, and that a refusal names a place in the text.
 
 use super::file::read;
 

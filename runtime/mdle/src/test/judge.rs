@@ -14,7 +14,7 @@ use super::subject::Subject;
 pub(super) struct Failure {
     /// Place of the expectation in the test file.
     pub(super) place: Place,
-    /// A sentence about the run.
+    /// Message about the run.
     pub(super) message: String,
     /// Text shown at the place of the expectation.
     pub(super) expected: String,
@@ -124,7 +124,7 @@ impl Judge<'_> {
         None
     }
 
-    /// Returns the names of the atoms that began from this time on.
+    /// Returns the names of the atoms that began at time `t` or later.
     fn began_after(&self, t: Nanos) -> String {
         const MOST: usize = 6;
         let began: Vec<_> = self.course.began.iter().filter(|began| began.t >= t).collect();
@@ -169,8 +169,8 @@ impl Judge<'_> {
         Some(Failure { atom, t: step.t, ..failure })
     }
 
-    /// Returns the first of the transitions that meet the largest number of these conditions; `None` if there were no
-    /// transitions.
+    /// Returns the transition that meets the largest number of `conditions`, the first if there are several; `None` if
+    /// there were no transitions.
     fn nearest(&self, conditions: &[&dyn Fn(&Step) -> bool]) -> Option<&Step> {
         let met = |step: &Step| conditions.iter().filter(|condition| condition(step)).count();
         let most = self.course.steps.iter().map(met).max()?;
@@ -218,7 +218,7 @@ impl Judge<'_> {
             End::Running => self.course.ending == Ending::Running,
             End::Failed => matches!(self.course.ending, Ending::Failed(_)),
         };
-        // A fault is a failure of its own.
+        // A fault is reported as a separate failure.
         if is_met || (matches!(self.course.ending, Ending::Failed(_)) && !matches!(end, End::Failed)) {
             return None;
         }
@@ -277,7 +277,7 @@ fn centimetres(gap: f64, least: f64) -> String {
 
 /// Returns the position and the heading of a pose, in the syntax of `--start`.
 pub(super) fn pose_words(pose: &Pose) -> String {
-    // No zero has a sign.
+    // Zeros are shown without a sign.
     let shown = |value: f64| format!("{:.2}", value + 0.0).replace("-0.00", "0.00");
     format!("{},{},{:.0}", shown(pose.x.0), shown(pose.y.0), libm::round(pose.theta.degrees()) + 0.0)
 }

@@ -1,4 +1,4 @@
-//! `mdle test`: tests of plans, in files beside them (docs/src/testing.md).
+//! `mdle test`: runs the tests of plans in the test files beside them (docs/src/testing.md).
 
 pub(crate) mod arguments;
 mod causes;
@@ -67,7 +67,7 @@ pub(crate) fn test(arguments: &Test, library: &Library<Sensed>) -> Result<ExitCo
     }
 }
 
-/// Runs tests, and runs them again if that has updated test files; returns the exit status.
+/// Runs tests, and, if this has updated test files, runs them again; returns the exit status.
 fn once(arguments: &Test, library: &Library<Sensed>) -> Result<u8, Failure> {
     if arguments.update {
         let (all, status) = Suites::read(arguments)?;
@@ -158,7 +158,7 @@ impl Suites {
     }
 }
 
-/// Checks that there is a test of this name, if all files could be read.
+/// Checks that there is a test called `name`, if all files could be read.
 fn must_have(name: &str, suites: &[Suite], status: u8) -> Result<(), Failure> {
     let names: Vec<_> = suites.iter().flat_map(|suite| &suite.cases).map(|case| case.name.as_str()).collect();
     if status > 0 || names.contains(&name) {
@@ -167,8 +167,7 @@ fn must_have(name: &str, suites: &[Suite], status: u8) -> Result<(), Failure> {
     Err(Failure::Usage(format!("there is no test `{name}`{}", did_you_mean(name, &names))))
 }
 
-/// Returns the test files that the arguments name: such files themselves, plans with such a file beside them, and
-/// folders.
+/// Returns the test files that the arguments name, either directly, or by the plan beside them, or by a folder.
 fn files(named: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let here = [PathBuf::from(".")];
     let mut files = Vec::new();
@@ -198,7 +197,7 @@ fn collect(folder: &Path, found: &mut BTreeSet<PathBuf>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let name = entry.file_name().to_string_lossy().into_owned();
-        // A link to a folder may lead back.
+        // A symbolic link to a folder is not followed, because it may lead back.
         let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
         if is_folder && !name.starts_with('.') && name != "target" {
             collect(&entry.path(), found);

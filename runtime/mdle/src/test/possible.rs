@@ -1,5 +1,5 @@
-//! Determines the transitions that a plan can make from its text alone, so that expectations that no run can meet are
-//! refused before any run.
+//! Determines, from the text of a plan alone, the transitions that the plan can make. An expectation that no run can
+//! meet is therefore refused before any run.
 
 use std::collections::BTreeSet;
 
@@ -12,10 +12,10 @@ use super::expected::{AtomsNamed, Expected, ExpectedTransition, Place};
 use super::file::TestFileError;
 use super::subject::Subject;
 
-/// Checks that the plan can do what is expected: make the transitions, and begin the atoms in their order.
+/// Checks that the plan can meet the expectations: make the transitions, and begin the atoms in their order.
 ///
 /// # Errors
-/// Fails with a sentence and a place if it cannot.
+/// Fails with a message and a place if it cannot meet them.
 pub(super) fn possible(expected: &Expected, subject: &Subject) -> Result<(), TestFileError> {
     let Expected { atoms, order, transitions, .. } = expected;
     [atoms, order].into_iter().flatten().try_for_each(|(_, atoms)| in_order(atoms, subject))?;
@@ -166,8 +166,7 @@ fn follow(element: Element<'_>, entered: &mut BTreeSet<Option<u32>>) {
     }
 }
 
-/// Returns the elements whose end ends an atom: the atom itself, and the enclosing scopes that have an
-/// interrupt.
+/// Returns the elements that can end an atom: the atom itself, and the enclosing scopes that have an interrupt.
 fn ending(atom: Atom<'_>) -> impl Iterator<Item = Element<'_>> {
     atom.element().outwards().filter(|element| element.completes() || has_interrupt(*element))
 }

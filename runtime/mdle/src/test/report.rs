@@ -16,9 +16,9 @@ use super::runner::{Job, Made, RunResult};
 use super::suite::{Case, RunsOn, Suite};
 use crate::messages;
 
-/// Maximum number of transitions before a failure that are shown.
+/// Maximum number of transitions to show before a failure.
 const STEPS: usize = 5;
-/// Maximum number of seeds of a test whose commands are shown.
+/// Maximum number of seeds of a test for which to show commands.
 const SEEDS: usize = 10;
 
 /// The runs of one test.
@@ -113,7 +113,7 @@ pub(super) fn tell(tests: &[Tested<'_>]) {
 
 /// Prints text to standard output.
 pub(super) fn said(text: &str) {
-    // A reader that has gone is not a reason to fail.
+    // A closed pipe is not an error.
     let _ = write!(io::stdout().lock(), "{}", PrintableLines(text)).and_then(|()| io::stdout().flush());
 }
 
@@ -124,7 +124,7 @@ fn failed(test: &Tested<'_>) {
     match &first.result {
         RunResult::Crashed(sentence) => {
             let label = Label::primary(test.suite.source, test.case.text.name.span());
-            // Help follows the sentence in lines of its own.
+            // The help text follows the message on separate lines.
             let mut lines = sentence.lines();
             let reason = lines.next().unwrap_or_default();
             let message = format!("{}: the run could not be made: {reason}", title(test, first.job));
@@ -135,7 +135,7 @@ fn failed(test: &Tested<'_>) {
         RunResult::Judged(course, failures) => {
             let mut told = None;
             for (number, failure) in (1..).zip(failures) {
-                // The transitions before several failures at one time are the same.
+                // Failures at the same time have the same transitions before them, which are shown only once.
                 let is_new = told.replace(failure.t) != Some(failure.t);
                 let report = report(test, first.job, course, failure, is_new);
                 let commands = if number == failures.len() { commands(test, first.job, failures) } else { Vec::new() };
@@ -159,8 +159,8 @@ fn title(test: &Tested<'_>, job: Job) -> String {
     format!("{}{seed}", test.case.name)
 }
 
-/// Returns the report of a failure: the expectation, the place in the plan, and the last transitions if they
-/// are to be shown.
+/// Returns the report of a failure: the expectation, the place in the plan and, if `has_transitions` is `true`, the
+/// last transitions.
 fn report(
     test: &Tested<'_>,
     job: Job,
@@ -204,7 +204,7 @@ fn transitions(test: &Tested<'_>, course: &Course, failure: &Failure) -> String 
     format!("last transitions:{lines}")
 }
 
-/// Returns a description of a run in a few words.
+/// Returns a short description of a run.
 fn course_words(course: &Course) -> String {
     let turns = if course.turns == 1 { "1 turn".to_owned() } else { format!("{} turns", course.turns) };
     match &course.ending {

@@ -142,7 +142,7 @@ fn case(xml: &mut String, run: &RunEntry) {
     *xml += "    </testcase>\n";
 }
 
-/// Returns a text for XML, without the control characters that XML forbids.
+/// Escapes a text for XML, and removes the control characters that XML forbids.
 fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for letter in text.chars() {

@@ -1,5 +1,4 @@
-//! Runs tests, many at the same time. The outcome depends neither on the number of threads nor on the order of
-//! runs.
+//! Runs tests in parallel. The outcome depends neither on the number of threads nor on the order of the runs.
 
 use std::io::{self, IsTerminal as _};
 use std::num::NonZeroUsize;
@@ -21,7 +20,7 @@ use super::scripted;
 use super::simulated::RunError;
 use super::suite::{Case, RunsOn, Suite};
 
-/// A run to be made.
+/// A run to make.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Job {
     pub(super) suite: usize,
@@ -41,7 +40,7 @@ pub(super) struct Made {
 pub(super) enum RunResult {
     /// The run has a course, and a list of the expectations that it has not met.
     Judged(Box<Course>, Vec<Failure>),
-    /// Sentence about a run that could not begin, or whose code panicked.
+    /// The run could not begin, or its code panicked; contains the error message.
     Crashed(String),
 }
 
@@ -55,7 +54,7 @@ impl RunResult {
     }
 }
 
-/// Returns the runs of all tests, or of the tests of this name.
+/// Returns the runs of all tests, or of the tests called `only`.
 pub(super) fn jobs(suites: &[Suite], only: Option<&str>, first: Option<u64>, count: Option<u64>) -> Vec<Job> {
     let mut jobs = Vec::new();
     for (suite, tests) in suites.iter().enumerate() {
@@ -68,7 +67,7 @@ pub(super) fn jobs(suites: &[Suite], only: Option<&str>, first: Option<u64>, cou
     jobs
 }
 
-/// Makes the runs on this number of threads; returns them in the order of `jobs`, and the coverage of each suite.
+/// Makes the runs on `threads` threads; returns them in the order of `jobs`, and the coverage of each suite.
 pub(super) fn run(
     suites: &[Suite],
     jobs: &[Job],
@@ -117,8 +116,8 @@ fn taken<'j>(next: &AtomicUsize, jobs: &'j [Job]) -> Option<(usize, &'j Job)> {
     jobs.get(number).map(|job| (number, job))
 }
 
-/// Makes a run. A panic fails only this run. `refused` contains, for each suite, the sentence about a module that was
-/// refused: such a module is not loaded again in other runs of the suite, because it may take long until a process is
+/// Makes a run. A panic fails only this run. `refused` contains, for each suite, the message about a module that was
+/// refused. The other runs of the suite do not load this module again, because it may take long until a process is
 /// refused.
 fn one(
     suites: &[Suite],
@@ -146,7 +145,7 @@ fn one(
             let failures = judge(&case.expected, &course, &suite.subject);
             let (first, _) = case.seeds(None, None);
             if failures.is_empty() && job.seed != first {
-                // Nobody reads the course of a run that is one of many and has passed.
+                // The course of a passed run with another seed than the first is not needed, and takes memory.
                 (course.steps, course.began) = (Vec::new(), Vec::new());
             }
             RunResult::Judged(Box::new(course), failures)
@@ -156,7 +155,7 @@ fn one(
     }
 }
 
-/// Makes a run; a panic in its code becomes a sentence.
+/// Makes a run; a panic in its code becomes an error.
 fn shielded(run: impl FnOnce() -> Result<Course, RunError>) -> Result<Course, RunError> {
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|payload| {
         let words = payload.downcast_ref::<&str>().map(|words| (*words).to_owned());

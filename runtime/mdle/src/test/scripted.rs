@@ -1,4 +1,4 @@
-//! Runs of a plan on the script of a test, without a robot.
+//! Runs a plan on the script of a test, without a robot.
 
 use mdle_compiler::fsm::Machine;
 use mdle_compiler::trace::{Counted, Reports, Script};
@@ -14,7 +14,7 @@ use super::subject::{Subject, TestCondition};
 /// Reads the script of a test, and converts its conditions and laws to the texts that the plan has for them.
 ///
 /// # Errors
-/// Fails with a sentence if the script has no turns, or an impossible turn.
+/// Fails with a message if the script has no turns, or an impossible turn.
 pub(super) fn script(turns: &At<Vec<At<ScriptTurn>>>, subject: &Subject) -> Result<Script, TestFileError> {
     let refused = |message: String| TestFileError::at(turns.span(), message);
     let turn = |line: usize| turns.get_ref().get(line.saturating_sub(1)).map_or(turns.span(), |turn| turn.span());
@@ -82,6 +82,6 @@ fn breaches(expected: &Expected, reports: &Reports, atom: Option<u32>, recorder:
 fn fires(machine: &Machine, reports: &Reports) -> bool {
     let mut transitions = Transitions::default();
     Counted::new(machine).watched(reports, &mut transitions);
-    // Its law may complete as well.
+    // The law of the plan may complete as well.
     transitions.iter().any(|(transition, _)| matches!(transition.cause, mdle_runtime::Cause::Fired(_)))
 }

@@ -1,4 +1,4 @@
-//! Runs of a plan on the simulated robot of a test.
+//! Runs a plan on the simulated robot of a test.
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -36,7 +36,7 @@ pub(super) struct Simulation {
     pub(super) timeout: Duration,
 }
 
-/// Reason, as a sentence, why a run could not be made.
+/// Message about a run that could not be made.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum RunError {
     /// A module is refused, which happens in every run of the plan.
@@ -45,14 +45,14 @@ pub(super) enum RunError {
     Own(String),
 }
 
-/// The conditions of a test in a run; each is a plan that never leaves its only atom.
+/// The conditions of a test during a run. Each runs as a plan that never leaves its only atom.
 type Watched = Vec<Option<Machine<LoadedPlan<SimAlphabet>>>>;
 
 impl Simulation {
     /// Reads the robot of a test in the file `path`.
     ///
     /// # Errors
-    /// Fails with a sentence and a place if the world, the start or another option is invalid.
+    /// Fails with a message and a place if the world, the start or another option is invalid.
     pub(super) fn read(test: &TestText, path: &Path, subject: &Subject) -> Result<Self, TestFileError> {
         let Some(loaded) = &subject.loaded else {
             let name = &subject.target_name;
@@ -120,7 +120,7 @@ impl Simulation {
         };
         let mut recorder = Recorder::new(subject.machine());
         recorder.course.ending = drive.turns(subject, expected, &mut recorder, coverage);
-        // After a fault nobody knows what the robot does: it is stopped in any case.
+        // After a fault, the state of the robot is unknown, so it is always stopped.
         let _ = drive.robot.stop();
         recorder.course.pose = Some(drive.robot.pose());
         Ok(recorder.course)
@@ -150,7 +150,7 @@ impl Driven<'_> {
         let (period, timeout) = (nanos(self.simulation.trials.period), nanos(self.simulation.timeout));
         for number in 0.. {
             let t = Nanos(u64::saturating_mul(number, period));
-            // A fault in this turn is one at this time.
+            // A fault in this turn is reported with this time.
             recorder.course.t = t;
             let y = match self.exchange(t) {
                 Ok(y) => y,
@@ -197,7 +197,7 @@ impl Driven<'_> {
     }
 
     fn follow(&self, subject: &Subject, (t, y): (Nanos, Sensed), recorder: &mut Recorder<'_>, coverage: &mut Coverage) {
-        // A plan that reads modules waits for them.
+        // A plan that reads modules waits for their first values.
         let Some(machine) = self.engine.machine() else { return recorder.waits(t) };
         let (plan, cursor) = (machine.plan(), machine.cursor());
         let words = |transition: &_, operands: &[_]| cause_words(plan, transition, operands);
@@ -232,7 +232,7 @@ impl Driven<'_> {
                     let runs = atoms.as_ref().is_none_or(|atoms| atom.is_some_and(|atom| atoms.holds(atom)));
                     let is_true = |machine: &Machine<LoadedPlan<SimAlphabet>>| {
                         let ending = machine.plan().next(machine.cursor(), &y, t);
-                        // Its law may complete as well.
+                        // The law of the condition's plan may complete as well.
                         ending.is_some_and(|ending| matches!(ending.cause, Cause::Fired(_)))
                     };
                     if runs && condition.as_ref().is_none_or(is_true) {
@@ -244,7 +244,7 @@ impl Driven<'_> {
     }
 }
 
-/// Begins the condition of an expectation; `None` if it has no condition.
+/// Starts the plan of an expectation's condition; returns `None` if the expectation has no condition.
 fn watched(never: &Never, y: &Sensed, t: Nanos) -> Option<Machine<LoadedPlan<SimAlphabet>>> {
     let Never::While { condition: Some(condition), .. } = never else { return None };
     let TestCondition { loaded, .. } = &**condition;

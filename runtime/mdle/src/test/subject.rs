@@ -68,7 +68,7 @@ impl Subject {
         let file = plan_file(path, tests);
         let settings = Settings::beside(&file)?;
         let given = tests.target.as_ref().map(|target| target.get_ref().as_str());
-        // Scripts need no robot: without a target, the plan is that of a robot that has everything.
+        // Scripts need no robot: without a target, the plan is compiled for a robot with every capability.
         let is_simulated = tests.test.iter().any(|test| test.script.is_none());
         let option = given.or_else(|| (is_simulated && !settings.names_target(None)).then_some(SIM));
         let target_name = settings.name_of_target(option).unwrap_or_default();
@@ -111,7 +111,7 @@ impl Subject {
     /// Returns the modules of a run: those of the program, and those that the `mdle.toml` names.
     ///
     /// # Errors
-    /// Fails with a sentence if a name is not a module name, or is already taken.
+    /// Fails with a message if a name is not a module name, or is already taken.
     pub(super) fn modules(&self, library: &Library<Sensed>) -> Result<Library<Sensed>, String> {
         let mut library = library.clone();
         for NamedByFile { place, name, command } in &self.processes {
@@ -130,7 +130,7 @@ impl Subject {
     /// enclosing scope.
     ///
     /// # Errors
-    /// Fails with a sentence and a help text if the plan has no such atom.
+    /// Fails with a message and a help text if the plan has no such atom.
     pub(super) fn atoms(&self, text: &str) -> Result<Vec<bool>, (String, String)> {
         let named = elements_named(self.machine(), &self.target, text)?;
         let is_inside = |element: Element<'_>| element.outwards().any(|element| named.contains(&element.number()));
@@ -140,7 +140,7 @@ impl Subject {
     /// Compiles a condition on the output of one turn.
     ///
     /// # Errors
-    /// Fails with a sentence if the text is not such a condition.
+    /// Fails with a message if the text is not such a condition.
     pub(super) fn condition(&self, text: &str) -> Result<TestCondition, String> {
         let law = self.machine().atom(0).law().text.clone();
         let plan = format!("{{ Condition ({text})\n (Atom (null) ({law})) }}");
@@ -176,7 +176,7 @@ impl Subject {
 /// Returns the error at its place in the test file, if it has a place there and the plan's own file has no errors.
 ///
 /// # Errors
-/// Fails with the error itself otherwise.
+/// Returns `error` unchanged if there is no such place, or if the plan's own file has errors.
 fn placed(place: Option<Range<usize>>, error: InputError) -> Result<TestFileError, InputError> {
     let Some(place) = place.filter(|_| !matches!(error, InputError::Faulty(_))) else { return Err(error) };
     let message = error.message(Spelling::TestEntry);
@@ -235,8 +235,7 @@ fn run_options(settings: &Settings, target: Option<&str>) -> Result<Vec<String>,
     Ok(words.filter(|word| OF_TESTS.iter().any(|name| word.starts_with(name))).collect())
 }
 
-/// Returns the word for an operand that depends on more than the output of one turn; `None` for any other
-/// operand.
+/// Returns the keyword of an operand that depends on more than the output of one turn; `None` for any other operand.
 fn memory<I>(operand: &Condition<I>) -> Option<&'static str> {
     match operand {
         Condition::Null | Condition::Quark(_) | Condition::Or(..) | Condition::And(..) | Condition::Not(_) => None,

@@ -1,4 +1,4 @@
-//! `--update`: writes the results of runs into test files, so that people can review them as changes of these files.
+//! `--update`: writes the results of runs into test files, for review as changes of these files.
 
 use std::fs;
 use std::io;
@@ -21,8 +21,8 @@ const POSE: [&str; 2] = ["10cm", "5"];
 /// A replacement of a range of a text.
 type Edit = (Range<usize>, String);
 
-/// Returns the text of a test file in which the expectations of atoms, of the end, of the pose and of numbers are
-/// replaced by the results of the first run of each test; `None` if nothing changes.
+/// Updates a test file: replaces the expectations of atoms, of the end, of the pose and of numbers by the results of
+/// the first run of each test. Returns the new text; `None` if nothing changes.
 pub(super) fn updated(text: &str, tests: &[Tested<'_>]) -> Option<String> {
     let mut edits: Vec<Edit> = tests.iter().flat_map(|test| edits(text, test)).collect();
     if edits.is_empty() {
@@ -41,7 +41,7 @@ pub(super) fn updated(text: &str, tests: &[Tested<'_>]) -> Option<String> {
 /// Writes the text of a test file, after checking that it is valid.
 ///
 /// # Errors
-/// Fails with a sentence if the text is not a test file, or cannot be written.
+/// Fails with a message if the text is not a test file, or cannot be written.
 pub(super) fn write(path: &Path, text: &str) -> Result<(), String> {
     let name = path.display();
     file::read(text).map_err(|error| {
@@ -119,7 +119,7 @@ fn atoms_text(machine: &Machine, course: &Course) -> String {
     if line.chars().count() < 100 { line } else { format!("[\n    {},\n]", laws.join(",\n    ")) }
 }
 
-/// Returns the end of a run in the words of a test; `None` if there are no words for it.
+/// Returns the end of a run in the syntax of test files; `None` if it cannot be expressed.
 fn end_text(subject: &Subject, course: &Course) -> Option<String> {
     use mdle_runtime::Words as _;
 

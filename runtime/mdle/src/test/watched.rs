@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::thread::sleep;
 use std::time::{Duration, SystemTime};
 
-/// Time between two checks of the files.
+/// Interval between two checks of the files.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// Extensions of the files on which tests depend.
@@ -32,7 +32,7 @@ impl WatchedFiles {
         Self { folders, last }
     }
 
-    /// Waits until a file has changed, and returns one that has.
+    /// Waits until a file has changed, and returns this file.
     pub(super) fn changed(&mut self) -> PathBuf {
         loop {
             sleep(LOOK);

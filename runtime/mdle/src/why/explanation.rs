@@ -14,7 +14,7 @@ use crate::examined::{ExaminedPlan, ExaminedTurn, Moment};
 /// An atom in a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct AtomWords {
-    /// Quark text of the atom's law.
+    /// Text of the atom's law.
     pub(crate) law: String,
     /// Line of the atom, with the names of its enclosing scopes and the passes of loops.
     pub(crate) place: String,
@@ -85,7 +85,7 @@ pub(crate) struct Explanation {
     pub(crate) output_age: Nanos,
     /// The input that was sent.
     pub(crate) sent: Twist,
-    /// The input that the plan computed; `None` if that was not examined.
+    /// The input that the plan computed; `None` if it was not examined.
     pub(crate) computed: Option<Twist>,
 }
 
@@ -102,7 +102,7 @@ pub(crate) struct Explainer {
     courses: BTreeMap<u64, Course>,
     /// Number of the active plan; `None` before the first turn.
     number: Option<u64>,
-    /// Number of the plan that was replaced in the last turn; `None` if none was.
+    /// Number of the plan that was replaced in the last turn; `None` if no plan was replaced.
     replaced: Option<u64>,
 }
 
@@ -142,7 +142,7 @@ impl Explainer {
         is_other
     }
 
-    /// Returns the number of the plan that was replaced in the last turn; `None` if none was.
+    /// Returns the number of the plan that was replaced in the last turn; `None` if no plan was replaced.
     pub(crate) fn replaced(&self) -> Option<u64> {
         self.replaced
     }
@@ -176,7 +176,7 @@ impl Explainer {
         Some(Replaced { atom: atom?, since: Nanos(latest.since.0 + turn.recorded.t.since(latest.t).0), cause })
     }
 
-    /// Continues the course of the plan of this number.
+    /// Continues the course of plan `number`.
     pub(crate) fn resume(&mut self, number: u64) {
         self.number = Some(number);
     }
@@ -246,7 +246,7 @@ impl Explainer {
         let cut = cut(turn, plan);
         let replaced = replaced.and_then(|replaced| self.replaced_atom(turn, replaced));
         let (mut ended, mut runs) = (Vec::new(), None);
-        // The moments of a turn that came too late are not those of its record.
+        // In a turn that was late, the replayed moments are not those of the recorded run.
         if let Some(plan) = plan.filter(|_| cut != Some(LATE)) {
             let texts = &*plan.texts;
             let mut moments = turn.moments.iter();

@@ -1,4 +1,4 @@
-//! Describes, in words, the time or the value that an operand lacks to fire, or for which it still holds.
+//! Describes the time or the value that an operand needs to fire, or for which it still holds.
 
 use mdle_compiler::plan::Condition;
 use mdle_host::rounded;
@@ -22,8 +22,8 @@ pub(crate) struct Values<'v> {
     pub(crate) is_range: bool,
 }
 
-/// Returns the time or value that an operand needs to fire; for a timer that has fired, the time that has
-/// passed; an empty text if there is neither. `inner` is the operand of NOT or RISING.
+/// Describes the time or value that an operand needs to fire; for a timer that has fired, the time that has passed;
+/// empty if there is neither. `inner` is the operand of NOT or RISING.
 pub(crate) fn lack(
     condition: &Condition,
     part: Examined,
@@ -84,8 +84,8 @@ pub(crate) fn lack(
     }
 }
 
-/// Time, in nanoseconds, by which a `rendezvous` is recognized: it fires at the earliest in the turn after its scope
-/// was entered.
+/// Duration, in nanoseconds, that distinguishes a `rendezvous` from `stuck`: it fires at the earliest in the turn after
+/// its scope was entered.
 const MEETING: u64 = 1;
 
 /// Returns, in words, the reason why a `rendezvous` has not fired; empty if it has fired.
@@ -120,7 +120,7 @@ pub(crate) fn held(condition: &Condition, part: Examined, values: &Values<'_>) -
     }
 }
 
-/// Returns the difference by which a comparison does not hold.
+/// Describes the difference by which a comparison does not hold.
 fn compared(measured: Measured, values: &Values<'_>) -> String {
     let Measured::Compared { left, right, .. } = measured else { return "it has not fired".to_owned() };
     let Some((unit, scale)) = values.unit else { return String::new() };
@@ -137,7 +137,7 @@ fn compared(measured: Measured, values: &Values<'_>) -> String {
     format!("{} {words}", amount(difference / scale, unit))
 }
 
-/// Returns the difference by which a comparison holds; empty if it is not a comparison.
+/// Describes the difference by which a comparison holds; empty if the operand is not a comparison.
 fn margin(measured: Measured, values: &Values<'_>) -> String {
     let (Measured::Compared { left, right, .. }, Some((unit, scale))) = (measured, values.unit) else {
         return String::new();
@@ -166,7 +166,7 @@ fn amount(value: f64, unit: &str) -> String {
     format!("{}{between}{unit}", short(value))
 }
 
-/// Formats a number with two decimals, or with as many more as it takes to have another digit than 0.
+/// Formats a number with two decimals, or with as many more as needed to show a digit other than 0.
 fn short(value: f64) -> String {
     let text = |decimals: usize| format!("{value:.decimals$}");
     let is_zero = |text: &str| text.parse() == Ok(0.0);

@@ -1,4 +1,4 @@
-//! `mdle why`: explains a turn of a recorded run, which is repeated up to that turn.
+//! `mdle why`: explains a turn of a recorded run, after replaying the run up to that turn.
 
 mod explanation;
 mod json;
@@ -32,7 +32,7 @@ struct Answer {
     /// The time in the question.
     asked: Nanos,
     next: Next,
-    /// The safety rule that changed the input, and its effect; `None` if none did.
+    /// The safety rule that changed the input, and its effect; `None` if no rule changed it.
     safety: Option<String>,
 }
 
@@ -130,7 +130,7 @@ fn at(asked: &Asked<'_>, time: &str, run: &mut ExaminedRun) -> Result<Result<Ans
     Ok(Ok(Answer { explanation, asked: time, next, safety }))
 }
 
-/// Repeats the turns up to the end of the record. Returns the reason if a turn does not match the record, or if a plan
+/// Replays the turns up to the end of the record. Returns the reason if a turn does not match the record, or if a plan
 /// of the record cannot be compiled.
 fn differing(run: &mut ExaminedRun) -> Option<Stop> {
     loop {

@@ -29,7 +29,7 @@ pub(crate) struct Never {
     pub(crate) runs: bool,
     /// The turns, since the element last began, in which it was entered and left at once.
     pub(crate) skipped: Option<Skips>,
-    /// The element's chances to begin since then; `None` if there was none.
+    /// The element's chances to begin since it last began; `None` if there was no chance.
     pub(crate) chance: Option<Chance>,
     /// The laws of the atoms that the element can follow.
     pub(crate) follows: Vec<String>,
@@ -76,9 +76,10 @@ pub(crate) struct Stay {
 pub(crate) struct Chance {
     /// Name of the scope that would have begun, if it encloses the element of the question.
     pub(crate) begins: Option<String>,
-    /// Number of periods of consecutive such turns; in a loop, one for each pass.
+    /// Number of periods of consecutive turns with such a chance; in a loop, one for each pass.
     pub(crate) times: u64,
-    /// Indices, in the list of scopes, of the scopes of which one had to end in the first turn.
+    /// Indices, in the list of scopes, of the scopes that would have led to the atom: one of them had to end in the
+    /// first turn.
     pub(crate) scopes: Vec<usize>,
     /// The first of these turns.
     pub(crate) first: Stay,
@@ -110,7 +111,7 @@ struct FactsOfTurn {
 /// contains it.
 ///
 /// # Errors
-/// Fails with a sentence if no plan of the record contains such an atom or scope.
+/// Fails with a message if no plan of the record contains such an atom or scope.
 pub(crate) fn never(target: &Target, text: &str, run: &mut ExaminedRun) -> Result<Result<Never, Stop>, String> {
     let mut searches: BTreeMap<u64, Option<Search>> = BTreeMap::new();
     let (mut explainer, mut unknown, mut number) = (Explainer::default(), Vec::new(), 0);
@@ -143,8 +144,7 @@ pub(crate) fn never(target: &Target, text: &str, run: &mut ExaminedRun) -> Resul
     Ok(Ok(Never { plan, is_replaced: own != number, ..answer }))
 }
 
-/// Returns the message that no plan of the record has such an atom, from the sentence and the help text for
-/// each plan.
+/// Returns the message that no plan of the record has such an atom, from the message and the help text for each plan.
 fn no_atom(text: &str, plans: Vec<(String, (String, String))>) -> String {
     match plans.as_slice() {
         [] => "the record has no turn of a plan".to_owned(),
@@ -178,7 +178,7 @@ impl Never {
 /// this text.
 ///
 /// # Errors
-/// Fails with a sentence and a help text if there are none.
+/// Fails with a message and a help text if there are none.
 fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> Result<Vec<u32>, (String, String)> {
     let is_line = |element: &Element<'_>| {
         let at = plan.source().bracket(element.number()).map(|words| words.at);
@@ -240,7 +240,7 @@ impl Search {
             |bracket: &u32| moment.scopes.iter().any(|scope| scope.bracket == *bracket && scope.since == Nanos::ZERO);
         let Some(bracket) = self.wanted.iter().copied().find(is_new) else { return };
         let t = place.turned.1;
-        // The first moment of a stay has the reason.
+        // The first moment of the turn has the reason.
         if self.skips.insert(bracket, t) == Some(t) {
             return;
         }
@@ -326,7 +326,7 @@ impl Search {
         let mut follows: Vec<_> = before.map(|atom| machine.atom(atom).law().text.clone()).collect();
         follows.dedup();
         self.answer.follows = follows;
-        // What was asked for, or else the innermost enclosing scope that had a chance.
+        // Takes the element in question, or else the innermost enclosing scope that had a chance.
         let candidates = self.wanted.iter().flat_map(|wanted| {
             let element = machine.element(*wanted);
             let own = element.first().number();
@@ -344,8 +344,8 @@ impl Search {
     }
 }
 
-/// Returns the last atoms of the elements after which an element can begin: of the element before it, and of each loop
-/// that begins with it.
+/// Returns the atoms after which an element can begin: the last atom of the element before it, and the last atom of
+/// each loop that begins with it.
 fn before(element: Element<'_>) -> Vec<u32> {
     let mut before = Vec::new();
     for inner in element.outwards() {

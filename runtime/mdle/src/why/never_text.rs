@@ -7,7 +7,7 @@ use mdle_host::{Clocked, rounded};
 use super::never::{Beginnings, Chance, Never, Skips, Stay, Turned};
 use super::text::{named, scope};
 
-/// Returns the text of the answer for the record of this name.
+/// Returns the text of the answer for the record `log`.
 pub(super) fn text(never: &Never, log: &str) -> String {
     let Never { asked, began, runs, skipped, chance, follows, plan, end, is_replaced, last } = never;
     let mut text = match began {

@@ -1,5 +1,5 @@
-//! The operands of a condition in a turn: their values, the operands that decide, and the values that they
-//! need.
+//! Explains the operands of a condition in a turn: their values, the operands that decide, and the values that operands
+//! need to fire.
 
 use std::iter::Peekable;
 use std::slice::Iter;
@@ -57,7 +57,7 @@ pub(crate) struct Examination {
     pub(crate) fired: bool,
     /// The parts that AND and OR join, in order.
     pub(crate) operands: Vec<Operand>,
-    /// The missing operands, joined as in the condition; empty if the condition has fired, or has only one
+    /// The operands that have not fired, joined as in the condition; empty if the condition has fired, or has only one
     /// operand.
     pub(crate) missing: String,
 }
@@ -183,10 +183,10 @@ impl Explaining<'_> {
         let text = text.words();
         let words = words.unwrap_or(&text);
         let written = words.written.to_owned();
-        // The comparison of which the values are shown is that inside NOT and RISING.
+        // The values shown are those of the comparison inside NOT and RISING.
         let holds = inner.map_or(fired, |inner| innermost(inner).part.fired);
         let shown = operand_words(words, measured, holds);
-        // Its own values are shown unless it is joined of several.
+        // The values are shown for each part if NOT or RISING contains several parts joined by AND or OR.
         let joined = inner.map_or(&[][..], |inner| if inner.number.is_none() { &inner.parts } else { &[] });
         let is_negated = matches!(node.condition, Condition::Not(_));
         let must_end_inside = if is_negated { !fired } else { must_end };
@@ -253,7 +253,7 @@ impl Explaining<'_> {
     }
 }
 
-/// Returns the words about an operand that has fired, in a condition that needs it not to fire.
+/// Describes an operand that has fired, in a condition that requires it not to fire.
 fn still(condition: &Condition, held: &str) -> String {
     let is_whole = held.is_empty() || matches!(condition, Condition::Wait { .. });
     if is_whole { held.to_owned() } else { format!("holds {held}") }

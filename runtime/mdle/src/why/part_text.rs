@@ -1,5 +1,5 @@
-//! The text of an operand inside NOT or RISING, with units and with the positions of its values. The words of the plan
-//! contain only the whole operand.
+//! The text of an operand inside NOT or RISING, with units and with the positions of its values. The plan's source
+//! words contain only the whole operand.
 
 use mdle_compiler::alphabet::Unit;
 use mdle_compiler::fsm::Machine;

@@ -43,7 +43,7 @@ pub(crate) struct Scope {
     pub(crate) leads_to: Option<String>,
 }
 
-/// Explains the scopes that enclose the atom at a moment.
+/// Returns the scopes that enclose the atom at a moment, with their conditions explained.
 pub(crate) fn scopes(plan: &ExaminedPlan, moment: &Moment, facts: &Facts) -> Vec<Scope> {
     moment.scopes.iter().map(|around| scope(plan, moment, around, facts)).collect()
 }
