@@ -1,10 +1,10 @@
 //! Numbers without a byte 1B, for controllers that may not accept this byte as a value. See
 //! docs/src/reference/protocols.md, 2.2.
 //!
-//! No known program that drives an rFLEX marks its bytes. Such programs replace a turn rate that contains a byte 1B by
-//! the nearest turn rate that does not. This module does so for every byte of every number.
+//! No known program that drives an rFLEX escapes the byte 1B. These programs replace a turn rate that contains a byte
+//! 1B by the nearest turn rate without one. This module does so for every byte of every number.
 
-/// The byte 1B, which begins a mark on the line.
+/// The escape byte 1B, which begins a two-byte mark on the line.
 pub(crate) const ESCAPE: u8 = 0x1B;
 
 /// Returns the nearest number in which none of the four bytes is 1B; if two numbers are equally near, the lower one.
@@ -12,7 +12,7 @@ pub(crate) const ESCAPE: u8 = 0x1B;
 pub fn avoided(number: u32) -> u32 {
     let bytes = number.to_be_bytes();
     let Some(place) = bytes.iter().position(|byte| *byte == ESCAPE) else { return number };
-    // What lies behind the byte, and how much that can be.
+    // Maximum value of the bytes after this one.
     let most = u32::MAX.checked_shr(8 * (place as u32 + 1)).unwrap_or(0);
     let begins = number & !most;
     let below = begins.wrapping_sub(1);
@@ -26,11 +26,11 @@ mod tests {
 
     #[test]
     fn a_number_with_the_byte_gives_way_to_its_neighbour() {
-        // The rule of the other programs, for the third byte and the first.
+        // Same results as the other programs, for the third byte and the first.
         assert_eq!([avoided(0x1B40), avoided(0x1B7F)], [0x1AFF; 2]);
         assert_eq!([avoided(0x1B80), avoided(0x1BC0)], [0x1C00; 2]);
         assert_eq!([avoided(0x1B00_0000), avoided(0x1BFF_FFFF)], [0x1AFF_FFFF, 0x1C00_0000]);
-        // And for those that it leaves out.
+        // Also for the bytes that the other programs do not check.
         assert_eq!([avoided(0x1B), avoided(0x0012_341B)], [0x1A, 0x0012_341A]);
         assert_eq!([avoided(0x001B_7FFF), avoided(0x001B_8000)], [0x001A_FFFF, 0x001C_0000]);
         assert_eq!(avoided(0x1B1B_1B1B), 0x1AFF_FFFF);

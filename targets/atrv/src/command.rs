@@ -1,11 +1,11 @@
-//! Commands to an rFLEX controller that the driver uses, as frames. See docs/src/reference/protocols.md, 2.3.
+//! Frames of the commands that the driver sends to an rFLEX controller. See docs/src/reference/protocols.md, 2.3.
 
 use crate::avoid::{ESCAPE, avoided};
 use crate::frame::{FrameBytes, Packet, check};
 
 /// Maximum number of data bytes of a command.
 const MOST: usize = 14;
-/// Maximum amount by which a number is reduced so that the frame's check is not 1B.
+/// Maximum amount by which a number is reduced so that the frame's checksum is not 1B.
 const NUDGES: u32 = 8;
 
 /// An axis of motion.
@@ -56,7 +56,7 @@ pub enum Command {
 pub enum Escape {
     /// Numbers are changed so that no byte has the value 1B.
     Avoid,
-    /// Bytes with the value 1B are marked.
+    /// Bytes with the value 1B are escaped.
     Mark,
 }
 
@@ -77,7 +77,8 @@ impl Command {
         }
     }
 
-    /// Returns port, opcode and data of the command. The first number that can be changed is reduced by `nudge`.
+    /// Returns the port, the opcode and the data of the command. The first number above [`NUDGES`] is reduced by
+    /// `nudge`.
     fn data(&self, escape: Escape, nudge: u32) -> (u8, u8, Data) {
         let mut data = Data { escape, nudge, bytes: [0; MOST], count: 0 };
         let (port, opcode) = match *self {
@@ -93,7 +94,7 @@ impl Command {
                 data.number(motion.velocity.unsigned_abs());
                 data.number(motion.acceleration);
                 data.number(motion.torque);
-                // A velocity of 0 has a direction too.
+                // The direction is also sent for a velocity of 0.
                 data.put(&[u8::from(motion.velocity >= 0)]);
                 (2, 7)
             }

@@ -13,15 +13,15 @@ mdle_serial::configuration! {
     /// Properties of an ATRV.
     Config;
 
-    /// Units of the controller per metre.
+    /// Number of controller units per metre.
     units_per_metre: f64 = 139_654.7, in 1000.0..=1e6, "" "what the controller counts", unverified;
-    /// Units of the controller per radian.
+    /// Number of controller units per radian.
     units_per_radian: f64 = 49_784.5, in 1000.0..=1e6, "" "what the controller counts", unverified;
-    /// Number of counts of a sonar per metre.
+    /// Number of sonar counts per metre.
     counts_per_metre: f64 = 1550.0, in 100.0..=10_000.0, "" "what a sonar counts", unverified;
     /// Maximum speed of the wheels of one side, in m/s.
     fastest: f64 = 1.2, in 0.01..=1.5, "m/s" "of a side", unverified;
-    /// Distance between the two sides that laws use, in metres.
+    /// Distance between the robot's wheel sides, as laws use it, in metres.
     wheel_base: f64 = 0.4, in 0.1..=1.0, "m" "between the sides", unverified;
     /// Acceleration of the robot, in m/s².
     acceleration: f64 = 1.0, in 0.1..=5.0, "m/s²" "", unverified;
@@ -37,7 +37,7 @@ mdle_serial::configuration! {
     escape: Escape = "avoid".to_owned(), "" "bytes 1B: \"avoid\" or \"mark\"", unverified;
     /// Number of sonars: 24 on four boards, or 16 on two boards.
     sonars: u8 = 24, "" "24 on four boards, or 16 on two", unverified;
-    /// Time for which a board waits for echoes, in microseconds.
+    /// Maximum time for which a board waits for echoes, in microseconds.
     echo: u32 = 30_000, in 1000..=100_000, "µs" "that a board waits for echoes";
     /// Range beyond which an echo is ignored, in metres.
     reach: f64 = 4.0, in 0.2..=10.0, "m" "beyond which there is no echo", unverified;
@@ -61,7 +61,7 @@ mdle_serial::configuration! {
     watchdog: u64 = 500, in 150..=5000, "ms" "without a turn until it is stopped";
     /// Pause after each command, in milliseconds.
     pause: u64 = 1, in 0..=10, "ms" "after each command";
-    /// Difference between the battery's voltage and the controller's report of it, in volts.
+    /// Difference between the battery's voltage and the voltage that the controller reports, in volts.
     battery_offset: f64 = 1.82, in -5.0..=5.0, "V" "by which it is above what it tells", unverified;
     /// Voltage below which the battery is low, in volts.
     low_battery: f64 = 21.0, in 10.0..=30.0, "V" "below which the battery is low", unverified;
@@ -72,7 +72,7 @@ mdle_serial::configuration! {
 /// Form in which the controller reports bumpers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bumpers {
-    /// Each bumper has an address of its own.
+    /// Each bumper has its own address.
     Addresses,
     /// Both bumpers are bits of one address.
     Bits,
@@ -103,7 +103,7 @@ impl Setting for Escape {
 }
 
 impl Config {
-    /// Checks the conditions that the ranges of single values cannot express.
+    /// Checks the conditions that the range of a single value cannot express.
     fn check(&self) -> Result<(), String> {
         within("inputs", self.inputs as f64, if self.inputs == 0 { 0.0 } else { 300.0 }, 60_000.0)?;
         within("plugged-above", self.plugged_above, self.low_battery, 40.0)?;

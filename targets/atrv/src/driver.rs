@@ -1,5 +1,5 @@
 //! The driver of an ATRV, as a kinetic state machine: each input is sent as two velocity commands, and the output is
-//! the content of the last reports (paper, Eq. 1).
+//! computed from the latest reports (paper, Eq. 1).
 
 use std::time::{Duration, Instant};
 
@@ -23,24 +23,24 @@ const HALF_LENGTH: Meters = Meters(0.315);
 const HALF_WIDTH: Meters = Meters(0.27);
 /// Radius of the smallest circle around the body.
 const RADIUS: Meters = Meters(0.415);
-/// Distance, in metres, between the two points of a wall beside the robot that are heard by the sonars at 18° from the
-/// wall's direction.
+/// Distance, along a wall beside the robot, between the points that the two sonars at 18° from the wall's normal hear,
+/// in metres.
 const SONARS_APART: Meters = Meters(0.33);
-/// Number of consistent pings that confirm a free way on a robot whose sonars fire in turn.
+/// Number of consistent pings that confirm a free path on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
-/// Maximum time in which the robot releases its brake, and each sonar pings a few times.
+/// Maximum time within which the robot releases its brake and each sonar pings several times.
 const STARTING: Duration = Duration::from_millis(1000);
-/// Minimum time that the robot has to come to rest before its brake is set; from 0.2 m/s it needs 0.2 s.
+/// Minimum time to wait for the robot to come to rest before its brake is set; from 0.2 m/s it needs 0.2 s.
 const STOPPING: Duration = Duration::from_millis(800);
-/// Maximum time in lockstep for a report during a stop, and for the line to accept the last commands.
+/// Timeout in lockstep for a report during a stop, and for the line to accept the last commands.
 const ANSWER: Duration = Duration::from_millis(150);
-/// Maximum time from the command to brake until the robot reports that its brake is set.
+/// Timeout from the command to brake until the robot reports that its brake is set.
 const BRAKING: Duration = Duration::from_millis(500);
-/// Time between two commands to brake.
+/// Interval at which the command to brake is repeated.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Time between two checks that the robot is at rest.
+/// Interval at which the driver checks whether the robot is at rest.
 const LOOK: Duration = Duration::from_millis(50);
-/// Maximum speed of a robot that counts as being at rest, in m/s and rad/s.
+/// Maximum speed at which a robot counts as being at rest, in m/s and rad/s.
 const STANDS: f64 = 0.01;
 /// Interval of the bumper reports, in microseconds; other drivers request the same interval.
 const INPUTS: u32 = 100_000;
@@ -53,12 +53,12 @@ pub struct Atrv {
     clock: Clock,
     times: Times,
     hearing: Hearing,
-    /// Drift of the odometry, measured by means of walls.
+    /// Drift of the odometry, measured at walls.
     compass: Compass,
     obedience: Obedience,
     /// Interval of the position reports.
     reports: Duration,
-    /// Number of position reports in a turn in lockstep.
+    /// Number of position reports per turn in lockstep.
     a_turn: u32,
     /// Time of the last request for the state of the brake.
     asked: Nanos,
@@ -66,7 +66,7 @@ pub struct Atrv {
     pub(crate) paths: PathStore,
 }
 
-/// Returns the time that all commands of a turn need on the line, with the pause after each command.
+/// Returns the transmission time of all commands of a turn, including the pause after each command.
 pub(crate) fn turn_takes(config: &Config) -> Duration {
     let [along, round] = motion::commands(&Twist::default(), config);
     let commands = [Command::Status, along, round];
@@ -75,11 +75,11 @@ pub(crate) fn turn_takes(config: &Config) -> Duration {
 }
 
 impl Atrv {
-    /// Opens the line and prepares the robot: the robot is at rest, its brake is released, it reports its position, and
-    /// each sonar has pinged.
+    /// Opens the line and prepares the robot. Then the robot is at rest, its brake is released, it reports its
+    /// position, and each sonar has pinged.
     ///
     /// # Errors
-    /// Fails if there is no line or no robot, if its brake is set, or if its sonars do not report.
+    /// Fails if the line or the robot is missing, if the brake stays set, or if sonars do not report.
     pub fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
         let line = Line::open(&config.device, SPEED)?;
         let watchdog = match clock {
@@ -110,7 +110,7 @@ impl Atrv {
             Ok(()) => Ok(atrv),
             Err(Fault::Ended(_)) => Err(Fault::Ended(atrv.stop().err().map(Box::new))),
             Err(fault) => {
-                // What led here says more than what comes of this.
+                // The earlier fault is reported, whether or not the stop succeeds.
                 let _ = atrv.stop();
                 Err(fault)
             }
@@ -120,7 +120,7 @@ impl Atrv {
     fn prepare(&mut self, period: Duration, request: &StopRequest) -> Result<(), Fault> {
         let go_on = || if request.is_made() { Err(Fault::Ended(None)) } else { Ok(()) };
         go_on()?;
-        // Another program may have left it moving.
+        // Another program may have left the robot moving.
         self.move_on(&Twist::default())?;
         self.say(Command::Defaults)?;
         self.say(Command::Inputs(INPUTS))?;
@@ -146,7 +146,7 @@ impl Atrv {
         }
     }
 
-    /// Commands a motion, and returns the resulting speeds of the robot's right and left side, in m/s.
+    /// Commands a motion, and returns the commanded speeds of the robot's right and left side, in m/s.
     fn move_on(&mut self, input: &Twist) -> Result<[f64; 2], Fault> {
         let commands = motion::commands(input, &self.config);
         for command in &commands {
@@ -157,7 +157,7 @@ impl Atrv {
         Ok(motion::asked(&commands, &self.config))
     }
 
-    /// Sends a command that is not a motion.
+    /// Sends a command other than a motion command.
     fn say(&mut self, command: Command) -> Result<(), Fault> {
         self.mouth.say(&command.frame(self.config.escape), Instant::now() + self.config.patience())?;
         self.rest();
@@ -174,19 +174,19 @@ impl Atrv {
         self.hearing.take(self.mouth.line(), at, self.a_turn, patience)
     }
 
-    /// Commands the robot to stop, repeatedly, until it reports that it is at rest. The robot may receive commands even
-    /// if its reports are lost.
+    /// Sends stop commands until the robot reports that it is at rest. Commands may reach the robot even if its reports
+    /// are lost.
     ///
     /// # Errors
     /// Fails if no command can be sent, or if the robot has not reported within the time limit, or has not reported
     /// that it is at rest.
     fn stands(&mut self) -> Result<(), Fault> {
         let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
-        // What it has reported before is of another time. If nothing can be read any more, that is found out below.
+        // Earlier reports describe an earlier time. A read error is detected below.
         let _ = self.hearing.forget(self.mouth.line());
-        // One that has been stopped before reports nothing any more.
+        // A robot that was stopped before sends no reports.
         let mut sent = self.say(Command::Reports(self.reports.as_micros() as u32));
-        // In lockstep time passes with commands only, but once it is silent there is nothing to wait for.
+        // In lockstep, time passes only with commands; after a first timeout, waiting has no purpose.
         let mut patience = if self.clock == Clock::Wall { Duration::ZERO } else { self.clock.patience(ANSWER) };
         for looks in 1.. {
             sent = sent.and_then(|()| self.move_on(&Twist::default()).map(drop));
@@ -210,8 +210,8 @@ impl Atrv {
         Err(Fault::Moves)
     }
 
-    /// Sets the brake, repeatedly, until the robot reports that the brake is set: a robot that receives no commands and
-    /// has stopped itself also reports that it is at rest.
+    /// Sends the command to brake until the robot reports that the brake is set. A report that the robot is at rest is
+    /// not enough: a robot that receives no commands stops itself.
     ///
     /// # Errors
     /// Fails if no command can be sent, or if the robot has not answered within the time limit, or has not reported
@@ -283,11 +283,11 @@ impl Robot for Atrv {
 
     fn stop(&mut self) -> Result<(), Fault> {
         self.mouth.ends();
-        // Braked at speed it would slide.
+        // At speed, a braked robot would slide.
         let stands = self.stands();
         self.mouth.ends();
         let deadline = Instant::now() + self.clock.patience(ANSWER);
-        // It is braked whether or not it has answered.
+        // The brake is set even if the robot has not answered.
         let braked = match stands {
             Ok(()) => self.brakes(),
             Err(fault) => {

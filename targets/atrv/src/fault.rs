@@ -13,7 +13,7 @@ use crate::report::Unreadable;
 pub enum Fault {
     /// The run was asked to end while the robot was being prepared. Contains a fault if the robot could not be stopped.
     Ended(Option<Box<Self>>),
-    /// The line cannot be opened, is closed, or no report arrived in time.
+    /// The line cannot be opened or is closed, or no report arrived in time.
     Line(LineFault),
     /// The received bytes are not a frame, and no position report arrived.
     Garbled(Garbled),
@@ -27,7 +27,7 @@ pub enum Fault {
     Deaf(u8),
     /// The watchdog has stopped the robot because no motion was commanded for this number of milliseconds.
     Overslept(u64),
-    /// The robot reports, but does not answer requests: the line from the driver to the robot is cut.
+    /// The robot sends reports, but does not answer requests: the line from the driver to the robot is cut.
     Unheard,
     /// The robot does not report this axis.
     NoAxis(Axis),

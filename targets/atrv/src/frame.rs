@@ -1,11 +1,11 @@
-//! Frames on the rFLEX line: start, port, id, opcode, length, data, check and end. Each byte 1B inside a frame is
-//! marked. See docs/src/reference/protocols.md, 2.2.
+//! Frames on the rFLEX line: start, port, id, opcode, length, data, checksum and end. Each byte 1B inside a frame is
+//! escaped. See docs/src/reference/protocols.md, 2.2.
 //!
 //! The bytes 1B 00 mean the value 1B; 1B 02 begins a frame, 1B 03 ends it, and 1B 01 is filler without a meaning.
 
 /// First byte of a two-byte mark.
 const ESCAPE: u8 = 0x1B;
-/// Second byte of a filler, which has no meaning.
+/// Second byte of the filler mark, which has no meaning.
 const FILLER: u8 = 0x01;
 /// Second byte of the mark that begins a frame.
 const START: u8 = 0x02;
@@ -13,13 +13,13 @@ const START: u8 = 0x02;
 const END: u8 = 0x03;
 /// Second byte of the mark for the value 1B.
 const LITERAL: u8 = 0x00;
-/// Number of bytes in a packet's head: port, id, opcode and length.
+/// Length of a packet's header (port, id, opcode and length), in bytes.
 const HEAD: usize = 4;
-/// Maximum length of a packet, in bytes: its head, 255 bytes of data, and the check.
+/// Maximum length of a packet, in bytes: the header, 255 bytes of data, and the checksum.
 const LONGEST: usize = HEAD + 255 + 1;
 /// Maximum number of data bytes in a packet that the driver writes.
 const MOST: usize = 32;
-/// Maximum length on the line of a packet with [`MOST`] data bytes, in bytes, if every byte is marked.
+/// Maximum transmitted length of a packet with [`MOST`] data bytes, in bytes, if every byte is escaped.
 const ROOM: usize = 2 * (HEAD + MOST + 1) + 4;
 
 /// Content of a frame.
@@ -31,11 +31,11 @@ pub struct Packet<'a> {
     pub id: u8,
     /// Number that identifies the command or report within its port.
     pub opcode: u8,
-    /// Bytes after the packet's head.
+    /// Bytes after the packet's header.
     pub data: &'a [u8],
 }
 
-/// Bytes of a frame on the line.
+/// Transmitted bytes of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FrameBytes {
     bytes: [u8; ROOM],
@@ -45,11 +45,11 @@ pub struct FrameBytes {
 /// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// Length mismatch: the frame states the first number of data bytes, and the second number was received.
+    /// Length mismatch: number of data bytes that the frame declares, and number that was received.
     Length(usize, usize),
-    /// The check of the received bytes is the first number, but the frame contains the second number.
+    /// Checksum mismatch: checksum of the received bytes, and checksum in the frame.
     Check(u8, u8),
-    /// This byte follows 1B, but the two do not form a mark.
+    /// This byte follows 1B, but is not the second byte of a known mark.
     Mark(u8),
     /// This byte is outside of any frame.
     Outside(u8),
@@ -68,14 +68,14 @@ impl core::fmt::Display for Garbled {
     }
 }
 
-/// Returns the check of `bytes`.
+/// Returns the checksum of `bytes`.
 pub(crate) fn check(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |check, byte| check ^ byte)
 }
 
 impl Packet<'_> {
-    /// Returns the frame's bytes on the line, with at most 32 bytes of data. With `marks`, bytes with the value 1B are
-    /// marked.
+    /// Returns the transmitted bytes of the frame, with at most 32 bytes of data. With `marks`, bytes with the value 1B
+    /// are escaped.
     #[must_use]
     pub fn written(&self, marks: bool) -> FrameBytes {
         let data = self.data.get(..self.data.len().min(MOST)).unwrap_or_default();
@@ -104,24 +104,24 @@ impl FrameBytes {
         }
     }
 
-    /// Returns the bytes of the frame.
+    /// Returns the transmitted bytes.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         self.bytes.get(..self.count).unwrap_or_default()
     }
 }
 
-/// State of a reader within the stream of bytes.
+/// State of a frame reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ReaderState {
-    /// Outside of any frame. `after_escape` is `true` if the last byte was 1B; `is_reported` is `true` if an error was
-    /// returned for these bytes.
+    /// Outside of any frame. `after_escape` is `true` if the last byte was 1B; `is_reported` is `true` if the error for
+    /// these bytes has been returned.
     Outside { after_escape: bool, is_reported: bool },
     /// Inside a frame. `after_escape` is `true` if the last byte was 1B.
     Inside { after_escape: bool },
 }
 
-/// Finds frames in the bytes of the line.
+/// Finds frames in received bytes.
 #[derive(Debug)]
 pub struct Reader {
     place: ReaderState,
@@ -147,7 +147,7 @@ impl Reader {
                 let cut = matches!(self.place, ReaderState::Inside { .. }) && self.count > 0;
                 let found = self.count;
                 (self.place, self.count) = (ReaderState::Inside { after_escape: false }, 0);
-                // The one before it never ended.
+                // The previous frame had no end.
                 if cut {
                     Err(Garbled::Length(self.declared_length(), found.saturating_sub(HEAD + 1)))
                 } else {
@@ -191,7 +191,7 @@ impl Reader {
         Ok(None)
     }
 
-    /// Stores a value of the packet, which does not complete the packet. Fails if the packet is too long.
+    /// Stores a byte of the packet, which does not complete the packet. Fails if the packet is too long.
     fn keep(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match self.bytes.get_mut(self.count) {
             Some(place) => {
@@ -206,7 +206,7 @@ impl Reader {
         }
     }
 
-    /// Returns the length of the data that the packet's head declares.
+    /// Returns the data length that the packet's header declares.
     fn declared_length(&self) -> usize {
         self.bytes.get(HEAD - 1).copied().map_or(0, usize::from)
     }

@@ -1,17 +1,17 @@
-//! Places and directions of the sonars of the two known ATRV-minis, and the paper's sixteen directions that each sonar
-//! serves.
+//! Positions and directions of the sonars of the two known ATRV-minis, and the paper's sixteen directions that each
+//! sonar serves.
 
 use mdle_runtime::{Mount, Radians, SONARS, SonarId};
 
 /// Maximum number of sonars that an ATRV-mini has.
 pub(crate) const MOST: usize = 24;
-/// Radius, in metres, of the ring on which the laws assume the sonars.
+/// Radius of the ring on which laws assume the sonars to be, in metres.
 pub(crate) const RING_RADIUS: f64 = 0.28;
 
 /// A sonar on the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transducer {
-    /// Board of the sonar, times 16, plus its channel.
+    /// Id of the sonar: its board times 16, plus its channel.
     pub(crate) id: u8,
     /// Distance of the sonar forward of the centre, in metres.
     x: f64,
@@ -73,7 +73,7 @@ fn four_boards(number: usize) -> Option<Transducer> {
 /// Returns a sonar of the robot with two boards of eight sonars; the right board mirrors the left one.
 fn two_boards(number: usize) -> Option<Transducer> {
     let (board, channel) = (number / 8, number % 8);
-    // The last two are the other way round on the right.
+    // On the right board, the last two channels are swapped.
     let twin = if board == 1 { *[0, 1, 2, 3, 4, 5, 7, 6].get(channel)? } else { channel };
     let (x, y, degrees, directions) = *HALF.get(twin)?;
     let left = at(board * 16 + channel, (x, y, degrees), directions);
@@ -82,7 +82,7 @@ fn two_boards(number: usize) -> Option<Transducer> {
         1 => Some(Transducer {
             y: -left.y,
             degrees: -left.degrees,
-            // Bit 16 - i for bit i.
+            // Mirrors the directions: bit i becomes bit 16 - i.
             directions: left.directions.reverse_bits().rotate_left(1),
             ..left
         }),
@@ -96,14 +96,14 @@ fn at(id: usize, (x, y, degrees): (f64, f64, f64), directions: &[usize]) -> Tran
 }
 
 impl Transducer {
-    /// Converts a range of this sonar, in metres, to a range from the ring. The result is measured along the sonar's
-    /// axis from the point of the axis that is nearest to the centre, and reduced by the ring's radius.
+    /// Converts a range of this sonar to a range from the ring, in metres. The result is measured along the sonar's
+    /// axis from the point nearest to the centre, and reduced by the ring's radius.
     pub(crate) fn on_the_ring(&self, range: f64) -> f64 {
         let (sin, cos) = libm::sincos(self.degrees.to_radians());
         (self.x * cos + self.y * sin + range - RING_RADIUS).max(0.0)
     }
 
-    /// Returns the mount of this sonar as a sonar that serves `direction`.
+    /// Returns the mount of this sonar when it serves `direction`.
     pub(crate) fn mount(&self, direction: usize) -> Mount {
         Mount::of(self.x, self.y, Radians::from_degrees(self.degrees), SonarId::new(direction as u8))
     }
@@ -166,7 +166,7 @@ mod tests {
 
     #[test]
     fn both_robots_are_as_their_owners_say() {
-        // Some rows of the lists of both, as they are printed.
+        // Some rows of the published lists of both robots.
         let found = |sonars: u8, id: u8| {
             let sonar = transducers(sonars).into_iter().flatten().find(|sonar| sonar.id == id).expect("such a sonar");
             [sonar.x * 1000.0, sonar.y * 1000.0, sonar.degrees].map(|number| libm::round(number * 100.0) / 100.0)
@@ -188,7 +188,7 @@ mod tests {
         for (sonars, (before, behind)) in [(24, (4, 20)), (24, (52, 36)), (16, (5, 7)), (16, (21, 22))] {
             let range = |id: u8| {
                 let sonar = transducers(sonars).into_iter().flatten().find(|sonar| sonar.id == id).expect("a sonar");
-                // Along its axis to a wall 1 m beside the middle.
+                // Range along the sonar's axis to a wall 1 m beside the centre.
                 let sin = libm::sin(sonar.degrees.to_radians());
                 sonar.on_the_ring((sin.signum() - sonar.y) / sin)
             };

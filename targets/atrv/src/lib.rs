@@ -1,7 +1,7 @@
-//! The iRobot ATRV-mini as a target: the language of its rFLEX controller, its driver, and its alphabet.
+//! The target for the iRobot ATRV-mini: the protocol of its rFLEX controller, the driver, and the alphabet.
 //!
 //! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has.
-//! Tests and tools use the language ([`Command`], [`Packet`], [`Report`]) and the driver, [`Atrv`].
+//! Tests and tools use the protocol ([`Command`], [`Packet`], [`Report`]) and the driver, [`Atrv`].
 #![forbid(unsafe_code)]
 
 pub mod alphabet;

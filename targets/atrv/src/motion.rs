@@ -1,4 +1,4 @@
-//! Converts the robot's speeds to the controller's units and back, and computes odometry from the positions of the
+//! Converts speeds between m/s or rad/s and the controller's units, and computes odometry from the positions of the
 //! axes. See docs/src/reference/protocols.md, 2.5.
 
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
@@ -6,19 +6,19 @@ use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twi
 use crate::command::{Axis, Command, Motion};
 use crate::config::Config;
 
-/// Maximum distance between two position reports, in metres; a greater difference of positions is rejected as a leap.
+/// Maximum distance between two reported positions, in metres; a larger distance is rejected as a leap.
 const LEAP: f64 = 1.0;
-/// Maximum number of leaps in excess of normal steps; with more leaps, the positions are meaningless.
+/// Maximum number by which leaps may exceed normal steps; beyond it, the positions are unusable.
 const LEAPS: u8 = 4;
 
-/// Returns the commands for `input`, translation first. Both axes are slowed down by the same factor so that no side
+/// Returns the commands for `input`, translation first. Both speeds are reduced by the same factor, so that no side
 /// exceeds the maximum speed and the robot stays on its curve. An input that is not a number stops the robot.
 pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
     let side = input.v.0.abs() + input.omega.0.abs() * (config.wheel_base / 2.0);
     let scale = if side.is_finite() { (config.fastest / side).min(1.0) } else { 0.0 };
     let units = |speed: f64, per: f64| if scale > 0.0 { libm::trunc(speed * scale * per) as i32 } else { 0 };
     let along = match units(input.v.0, config.units_per_metre) {
-        // There are controllers that leave the old speed as it is when they are told 0.
+        // Some controllers keep the previous speed when they receive a speed of 0.
         0 if config.zero_as_one => 1,
         along => along,
     };
@@ -35,7 +35,7 @@ pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
     [Command::Move(Axis::Translation, translation), Command::Move(Axis::Rotation, rotation)]
 }
 
-/// Odometry of the robot from the positions of its axes, beginning with the first report.
+/// Odometry of the robot, computed from the positions of its axes; the first report is the origin.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Odometer {
     last: Option<(i32, i32)>,
@@ -44,7 +44,7 @@ pub(crate) struct Odometer {
 }
 
 impl Odometer {
-    /// Stores the current positions of the axes, which wrap at 32 bits.
+    /// Updates the pose with the current positions of the axes, which wrap at 32 bits.
     pub(crate) fn take(&mut self, along: i32, round: i32, config: &Config) {
         let (was_along, was_round) = self.last.replace((along, round)).unwrap_or((along, round));
         let way = f64::from(along.wrapping_sub(was_along)) / config.units_per_metre;
@@ -57,33 +57,33 @@ impl Odometer {
         }
     }
 
-    /// Returns `true` if the positions leap repeatedly and are therefore meaningless.
+    /// Returns `true` if the positions leap so often that they are unusable.
     pub(crate) fn leaps(&self) -> bool {
         self.leaps > LEAPS
     }
 }
 
-/// Returns the speeds of the right and the left side of a robot with this motion, in m/s.
+/// Returns the speeds of the robot's right and left side for `motion`, in m/s.
 pub(crate) fn sides(motion: &Twist, config: &Config) -> [f64; 2] {
     let across = motion.omega.0 * (config.wheel_base / 2.0);
     [motion.v.0 + across, motion.v.0 - across]
 }
 
-/// Returns the speeds of both sides that `commands` request, in m/s.
+/// Returns the speeds of the right and left side that `commands` request, in m/s.
 pub(crate) fn asked(commands: &[Command; 2], config: &Config) -> [f64; 2] {
     let velocity = |command: &Command| if let Command::Move(_, motion) = command { motion.velocity } else { 0 };
     let [along, round] = commands;
     sides(&twist(velocity(along), velocity(round), config), config)
 }
 
-/// Returns two decelerations of the sides, in m/s²: for sides that move in the same direction, and for sides that move
-/// in opposite directions.
+/// Returns the decelerations of the sides, in m/s²: while both move in the same direction, and while they move in
+/// opposite directions.
 pub(crate) fn brakes(config: &Config) -> [f64; 2] {
     let turning = f64::from(config.rotation_acceleration) / config.units_per_radian;
     [config.acceleration, turning * (config.wheel_base / 2.0)]
 }
 
-/// Returns the speed of a robot whose axes have these velocities.
+/// Returns the motion of a robot whose axes have these velocities.
 pub(crate) fn twist(along: i32, round: i32, config: &Config) -> Twist {
     Twist {
         v: MetersPerSecond(f64::from(along) / config.units_per_metre),
@@ -141,10 +141,10 @@ mod tests {
         assert_eq!(at(i32::MAX - 200, i32::MIN + 100), [0, 0, 0]);
         assert_eq!(at(i32::MAX, i32::MIN + 100), [200, 0, 0]);
         assert_eq!(at(i32::MIN + 299, i32::MIN + 100), [500, 0, 0]);
-        // A quarter of a circle on the spot, over the end of its numbers too, then half a metre on.
+        // A quarter turn on the spot, during which the position wraps, then half a metre ahead.
         assert_eq!(at(i32::MIN + 299, i32::MAX - 1470), [500, 0, -1571]);
         assert_eq!(at(i32::MIN + 799, i32::MAX - 1470), [500, -500, -1571]);
-        // A leap is none, and what follows counts from where it ended.
+        // A leap does not change the pose; later positions count from the position after the leap.
         assert_eq!(at(9000, 0), [500, -500, -1571]);
         assert_eq!(at(9100, 0), [500, -600, -1571]);
     }

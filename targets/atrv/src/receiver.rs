@@ -1,4 +1,4 @@
-//! Receives the robot's reports: keeps the state that they contain, and detects faults.
+//! Receives the robot's reports, stores the robot's state, and detects faults.
 
 use std::time::{Duration, Instant};
 
@@ -17,18 +17,17 @@ use crate::ring::Ring;
 const CHUNK: usize = 512;
 /// Maximum delay of an answer, in addition to twice the time between two requests.
 const LATE: Duration = Duration::from_millis(300);
-/// Maximum number of consecutive reads, after which the caller can check whether enough reports have arrived: a robot
-/// may send without end.
+/// Maximum number of consecutive reads before the number of reports is checked: a robot may send without end.
 const READS: usize = 64;
 
-/// Reader of the robot's reports, with the robot's state according to the reports.
+/// Receiver of the robot's reports, with the robot's state according to the reports.
 #[derive(Debug)]
 pub(crate) struct Hearing {
     reader: Reader,
     known: Known,
-    /// Time of the last position report, by this computer's clock; `None` before the first report.
+    /// Time of the last position report by this computer's clock; `None` before the first report.
     last_report: Option<Instant>,
-    /// Fault found since the last position report; `None` if there is none.
+    /// Fault found since the last position report; `None` if no fault was found.
     trouble: Option<Fault>,
     /// Maximum time between two reports of the brake.
     unanswered: Nanos,
@@ -40,13 +39,13 @@ struct Known {
     config: Config,
     odometer: Odometer,
     ring: Ring,
-    /// Position and velocity of the translation, which are reported before those of the rotation; `None` once they are
-    /// used.
+    /// Position and velocity of the translation, which are reported before those of the rotation; `None` after the
+    /// rotation has been reported.
     along: Option<(i32, i32)>,
     velocity: Twist,
-    /// Time of the last position report, by the controller's clock; `None` before the first report.
+    /// Time of the last position report by the controller's clock; `None` before the first report.
     time: Option<u32>,
-    /// Time of the exchange that brought the last position report.
+    /// Time of the exchange that received the last position report.
     positioned: Nanos,
     /// Bumpers in contact: bit 0 for the front bumper, bit 1 for the rear bumper.
     switches: u32,
@@ -82,8 +81,8 @@ impl Hearing {
         Self { reader: Reader::default(), known, last_report: None, trouble: None, unanswered }
     }
 
-    /// Reads the reports that have arrived, and waits for `count` position reports; if `count` is 0, waits until a
-    /// position report has arrived within the last `patience`.
+    /// Reads the reports that have arrived, and waits for `count` position reports. If `count` is 0, waits until the
+    /// last position report is not older than `patience`.
     ///
     /// # Errors
     /// Fails if the line is closed, or if the position reports have not arrived within `patience`.
@@ -99,15 +98,15 @@ impl Hearing {
             let since = if count > 0 { begun } else { self.last_report.unwrap_or(begun) };
             match line.hear(since + patience) {
                 Ok(()) => {}
-                // What came meanwhile says more than that it was not enough.
+                // A fault found meanwhile is more specific than a missing report.
                 Err(LineFault::Silent) => return Err(self.trouble.take().unwrap_or(Fault::Line(LineFault::Silent))),
                 Err(fault) => return Err(fault.into()),
             }
         }
     }
 
-    /// Reads the reports that have arrived, and clears the time and the fault of the last reports; the reported state
-    /// is kept.
+    /// Reads the reports that have arrived, and clears the time and the fault of the last report. The robot's state is
+    /// kept.
     ///
     /// # Errors
     /// Fails if the line is closed.
@@ -147,7 +146,7 @@ impl Hearing {
     /// Waits until the robot reports that its brake is set.
     ///
     /// # Errors
-    /// Fails if the line is closed, or if, until `deadline`, the robot has not reported its brake since
+    /// Fails if the line is closed. Also fails if, by `deadline`, the robot has not reported the brake since
     /// [`Self::forget_brake`], or has reported that it is not set.
     pub(crate) fn brake(&mut self, line: &Line, deadline: Instant) -> Result<(), Fault> {
         loop {
@@ -164,8 +163,7 @@ impl Hearing {
         }
     }
 
-    /// Returns the fault with which the start fails if the first missing report does not arrive; `None` if all reports
-    /// have arrived.
+    /// Returns the fault for the first report that the start still waits for; `None` if all reports have arrived.
     pub(crate) fn waits_for(&self) -> Option<Fault> {
         match self.known.is_braked {
             None => Some(Fault::Unheard),
@@ -177,7 +175,7 @@ impl Hearing {
         }
     }
 
-    /// Checks that the robot can continue at the time `at` of an output.
+    /// Checks, at the time `at` of an output, that the robot can continue.
     ///
     /// # Errors
     /// Fails if the brake is set, if the positions leap, or if a report is overdue.
@@ -201,7 +199,7 @@ impl Hearing {
         self.known.odometer.pose
     }
 
-    /// Returns the time from the exchange that brought the last position report to the exchange at `at`.
+    /// Returns the time since the last position report was received, at the exchange time `at`.
     pub(crate) fn age(&self, at: Nanos) -> Nanos {
         at.since(self.known.positioned)
     }
@@ -221,7 +219,7 @@ impl Hearing {
         &self.known.ring.pings
     }
 
-    /// Returns the battery's voltage and state. A high voltage alone shows that the battery is being charged.
+    /// Returns the battery's voltage and state. The charging state is derived from the voltage only.
     pub(crate) fn supply(&self) -> Supply {
         let Known { battery, config, .. } = &self.known;
         let is_plugged = battery.0 > config.plugged_above;
@@ -258,7 +256,7 @@ impl Hearing {
 }
 
 impl Known {
-    /// Stores the content of a packet, and returns `true` if the packet completes a position report.
+    /// Stores the content of a packet. Returns `true` if the packet completes a position report.
     fn take(&mut self, packet: &Packet<'_>, at: Nanos) -> Result<bool, Fault> {
         match Report::read(packet).map_err(Fault::Unreadable)? {
             Report::Axis { axis: Axis::Translation, position, velocity, .. } => {

@@ -9,7 +9,7 @@ use crate::frame::Packet;
 pub enum Report<'a> {
     /// Position of an axis relative to its position at switch-on, and its velocity.
     Axis {
-        /// Axis that the report is about.
+        /// Reported axis.
         axis: Axis,
         /// Position of the axis, in the controller's units; it wraps at 32 bits.
         position: i32,
@@ -52,7 +52,7 @@ pub enum Unreadable {
 pub struct Echoes<'a>(&'a [u8]);
 
 impl Echoes<'_> {
-    /// Returns the number of each sonar and the range that it reports.
+    /// Returns the sonar's number and the reported range of each echo.
     pub fn each(&self) -> impl Iterator<Item = (u8, u16)> {
         self.0.chunks_exact(3).filter_map(|echo| match echo {
             [sonar, high, low] => Some((*sonar, u16::from_be_bytes([*high, *low]))),
@@ -79,10 +79,10 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Reads a return value, the time, the axis, its position and its velocity. The other bytes repeat the controller's
+/// Reads a return value, the time, the axis, its position and its velocity. The remaining bytes repeat the controller's
 /// commands.
 fn axis(data: &[u8]) -> Option<Report<'static>> {
-    // Twenty-five bytes have come, or it is not what it says.
+    // The report has twenty-five bytes; a shorter one is malformed.
     let [_, _, _, _, t0, t1, t2, t3, axis, p0, p1, p2, p3, v0, v1, v2, v3, _, _, _, _, _, _, _, _, ..] = data else {
         return None;
     };
@@ -96,7 +96,7 @@ fn axis(data: &[u8]) -> Option<Report<'static>> {
     Some(Report::Axis { axis, position, velocity: i32::from_be_bytes([*v0, *v1, *v2, *v3]), time })
 }
 
-/// Reads the time, the address of an input and its state. Some controllers leave out one byte of the state.
+/// Reads the time, the address of an input and its state. Some controllers omit one byte of the state.
 fn input(data: &[u8]) -> Option<Report<'static>> {
     match data {
         [_, _, _, _, address, high, low] => {

@@ -9,18 +9,17 @@ use crate::layout::{MOST, Transducer, transducers};
 /// Time without a ping after which a direction counts as defective; a sweep of all sonars takes a fifth of this time.
 const DEAF: Nanos = Nanos(1_000_000_000);
 
-/// State of the sonars and their pings.
+/// State of the sonars, and their pings.
 ///
-/// A direction pings when each sonar that serves it has reported since the direction's last ping. If a sonar reports a
-/// second time before another sonar has reported, the direction pings as well, since the other sonar's report may have
-/// been lost.
+/// A direction has a new ping when each sonar that serves it has reported since the direction's last ping. It also has
+/// one when a sonar reports for the second time before another sonar has reported, because a report may have been lost.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     transducers: [Option<Transducer>; MOST],
-    /// Last range of each sonar, in metres from the ring; `None` without an echo.
+    /// Last range of each sonar from the ring, in metres; `None` if there was no echo.
     ranges: [Option<f64>; MOST],
     pub(crate) pings: [Pings; SONARS],
-    /// Sonars that have reported since each direction's last ping: bit `i` for sonar `i`.
+    /// Sonars that have reported since the last ping of each direction: bit `i` for sonar `i`.
     reported: [u32; SONARS],
     counts_per_metre: f64,
     reach: f64,
@@ -39,14 +38,13 @@ impl Ring {
         }
     }
 
-    /// Stores the echo of the sonar with this id, when odometry reports `pose`. An id without a sonar belongs to an
-    /// unused channel of a board.
+    /// Stores the echo of the sonar with this id; `pose` is the pose by odometry. Ignores ids of unused channels.
     pub(crate) fn take(&mut self, id: u8, counts: u16, at: Nanos, pose: Pose) {
         let found = self.transducers.iter().zip(0..).find(|(sonar, _)| sonar.is_some_and(|sonar| sonar.id == id));
         let Some((Some(sonar), number)) = found else { return };
         let sonar = *sonar;
         let range = f64::from(counts) / self.counts_per_metre;
-        // A channel without a sonar says 0, and a sonar without an echo more than it can hear.
+        // An unused channel reports 0; a sonar without an echo reports a value beyond its range.
         let range = (counts > 0 && range < self.reach).then(|| sonar.on_the_ring(range));
         for direction in (0..SONARS).filter(|direction| sonar.directions & (1 << direction) != 0) {
             if self.reported(direction) & (1 << number) != 0 {
@@ -66,7 +64,7 @@ impl Ring {
         }
     }
 
-    /// Returns the lowest direction that has fewer pings than are kept; `None` if there is no such direction.
+    /// Returns the lowest direction that has fewer pings than can be stored; `None` if there is no such direction.
     pub(crate) fn unheard(&self) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         all.filter(|(_, pings)| pings.newest_first().count() < PINGS_KEPT).map(|(direction, _)| direction).next()
@@ -90,7 +88,7 @@ impl Ring {
         all.filter(|(_, sonar)| speaks(sonar)).fold(0, |bits, (number, _): (u32, _)| bits | 1 << number)
     }
 
-    /// Stores a ping of this direction with the smallest range of its sonars.
+    /// Stores a ping of this direction, with the smallest range of its sonars.
     fn ping(&mut self, direction: usize, at: Nanos, pose: Pose) {
         let (Some(reported), Some(pings)) = (self.reported.get_mut(direction), self.pings.get_mut(direction)) else {
             return;
@@ -125,7 +123,7 @@ mod tests {
     fn a_direction_pings_when_all_of_its_sonars_have_reported() {
         let mut ring = ring(24);
         let mut take = |id, counts, at| ring.take(id, counts, Nanos(at), Pose::ORIGIN);
-        // One that is alone, at 36 and 54 degrees two, and one that there is not.
+        // One sonar serves direction 1, two sonars (at 36° and 54°) serve direction 2, and sonar 9 does not exist.
         take(1, 1550, 1);
         take(2, 1550, 1);
         take(9, 1550, 1);
@@ -133,7 +131,7 @@ mod tests {
         assert_eq!(heard(&ring, 1), [(1, Some(1007))]);
         assert_eq!(heard(&ring, 2), [(2, Some(515))]);
         assert_eq!(heard(&ring, 3), []);
-        // Without an echo, and from an empty channel.
+        // A report without an echo, and one from an unused channel.
         ring.take(1, 32_766, Nanos(3), Pose::ORIGIN);
         ring.take(1, 0, Nanos(4), Pose::ORIGIN);
         assert_eq!(heard(&ring, 1), [(4, None), (3, None), (1, Some(1007))]);
@@ -146,7 +144,7 @@ mod tests {
             ring.take(2, 1550, Nanos(at), Pose::ORIGIN);
         }
         assert_eq!(heard(&ring, 2).iter().map(|(at, _)| *at).collect::<Vec<_>>(), [4, 3, 2]);
-        // The other one reports again.
+        // The other sonar reports again.
         ring.take(3, 1550, Nanos(5), Pose::ORIGIN);
         assert_eq!(heard(&ring, 2)[0].0, 5);
     }

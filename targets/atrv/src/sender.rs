@@ -1,7 +1,7 @@
-//! Sends commands to the robot, with a watchdog that stops the robot if no motion is commanded for too long.
+//! Sends commands to the robot. A watchdog stops the robot if no motion is commanded for too long.
 //!
-//! The controller stops a robot whose line falls silent, but no document says after what time. A thread of this program
-//! therefore stops the robot earlier. Only if the program dies does the controller stop the robot.
+//! The controller stops a robot whose line falls silent, but its timeout is not documented. Therefore a thread of this
+//! program stops the robot earlier; the controller's timeout only matters if the program dies.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -12,7 +12,7 @@ use mdle_serial::{Line, Moment};
 use crate::fault::Fault;
 use crate::frame::FrameBytes;
 
-/// Maximum time for the line to accept the watchdog's commands.
+/// Timeout for the line to accept the watchdog's commands.
 const STOPPING: Duration = Duration::from_millis(100);
 
 /// The line to the robot, with a watchdog that supervises the motion commands.
@@ -34,7 +34,7 @@ struct Shared {
 /// State of the watchdog.
 #[derive(Debug)]
 struct Watch {
-    /// Time of the last motion command; `None` while no further motion command is due.
+    /// Time of the last motion command; `None` if the watchdog is disarmed.
     last_motion: Option<Moment>,
     /// `true` if the watchdog has stopped the robot.
     has_bitten: bool,
@@ -43,14 +43,14 @@ struct Watch {
 
 impl Shared {
     fn watch(&self) -> MutexGuard<'_, Watch> {
-        // Whoever panicked left nothing half done in it.
+        // A panic cannot leave this state inconsistent.
         self.watch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Mouth {
-    /// Returns the sender of commands to `line`. With a limit, the watchdog sends `stop` if the next motion command
-    /// does not follow within the limit.
+    /// Returns a sender of commands to `line`. With a watchdog (limit and stop commands), the stop commands are sent if
+    /// no motion command follows the last one within the limit.
     pub(crate) fn new(line: Line, watchdog: Option<(Duration, [FrameBytes; 2])>) -> Self {
         let watch = Watch { last_motion: None, has_bitten: false, is_over: false };
         let limit = watchdog.as_ref().map(|(limit, _)| *limit);
@@ -58,7 +58,7 @@ impl Mouth {
         let watching = watchdog.and_then(|(limit, stop)| {
             let shared = Arc::clone(&shared);
             let thread = thread::Builder::new().name("watchdog".to_owned());
-            // Where there are no more threads the controller has to do.
+            // If no thread can be created, only the controller's timeout remains.
             thread.spawn(move || keep_watch(&shared, limit, &stop)).ok()
         });
         Self { shared, watching, limit }
@@ -69,17 +69,17 @@ impl Mouth {
         &self.shared.line
     }
 
-    /// Sends a command that is not a motion.
+    /// Sends a command other than a motion command.
     ///
     /// # Errors
     /// Fails if the line is closed, or accepts no bytes until `deadline`.
     pub(crate) fn say(&self, frame: &FrameBytes, deadline: Instant) -> Result<(), Fault> {
-        // No command of the watchdog's is to come into the middle of it.
+        // The lock prevents the watchdog from sending a command in the middle of this one.
         let _watch = self.shared.watch();
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
     }
 
-    /// Sends a motion command. The watchdog then waits for the next motion command.
+    /// Sends a motion command, and restarts the watchdog's timeout.
     ///
     /// # Errors
     /// Fails if the line is closed or accepts no bytes until `deadline`, or if the watchdog has stopped the robot.
@@ -90,17 +90,17 @@ impl Mouth {
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
     }
 
-    /// Checks that the watchdog has no reason to stop the robot.
+    /// Checks that the watchdog's limit has not been exceeded.
     ///
     /// # Errors
-    /// Fails if the last motion command is too old.
+    /// Fails if the last motion command is too old, or if the watchdog has stopped the robot.
     pub(crate) fn is_awake(&self) -> Result<(), Fault> {
         self.is_in_time(&self.shared.watch())
     }
 
     fn is_in_time(&self, watch: &Watch) -> Result<(), Fault> {
         let Some(limit) = self.limit else { return Ok(()) };
-        // Where this program, or the computer, was suspended, so was the watchdog.
+        // If this program or the computer was suspended, the watchdog was suspended too.
         let is_late = watch.has_bitten || watch.last_motion.is_some_and(|time| time.elapsed() >= limit);
         if is_late { Err(Fault::Overslept(limit.as_millis() as u64)) } else { Ok(()) }
     }
@@ -117,7 +117,7 @@ impl Drop for Mouth {
         self.shared.watch().is_over = true;
         self.shared.over.notify_all();
         if let Some(watching) = self.watching.take() {
-            // It has nothing to tell.
+            // The thread returns no result, and a panic in it needs no handling here.
             let _ = watching.join();
         }
     }
@@ -132,7 +132,7 @@ fn keep_watch(shared: &Shared, limit: Duration, stop: &[FrameBytes; 2]) {
             (watch.last_motion, watch.has_bitten) = (None, true);
             let deadline = Instant::now() + STOPPING;
             for frame in stop {
-                // If the line takes it no longer, nothing else can be done.
+                // If the line accepts no bytes, nothing else can be done.
                 let _ = shared.line.write(frame.bytes(), deadline);
             }
         }

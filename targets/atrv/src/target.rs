@@ -11,7 +11,7 @@ use crate::config::Config;
 use crate::driver::{Atrv, turn_takes};
 use crate::fault::Fault;
 
-/// Minimum difference between the watchdog's limit and the period, for turns that are late.
+/// Minimum margin between the period and the watchdog's limit, for turns that are late.
 const SLACK: Duration = Duration::from_millis(50);
 
 impl SerialRobot for Atrv {
@@ -82,7 +82,7 @@ mod tests {
             sentence,
             "a --period of 0.007 s is too short for this robot's line, on which each turn takes 7.8ms: choose 0.008 s or longer"
         );
-        // There is no such device.
+        // The device does not exist.
         for (micros, more) in [(7_000 + 1_000, &[][..]), (7_000, &["--lockstep"])] {
             assert!(matches!(connected(micros, more), Err(Refusal::Fault(_))), "{micros} {more:?}");
         }

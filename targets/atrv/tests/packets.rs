@@ -1,5 +1,5 @@
-//! Compares the driver's language with all known example packets, in both directions: the bytes of commands, and the
-//! content of reports.
+//! Compares the driver's implementation of the protocol with all known example packets, in both directions: the bytes
+//! of commands, and the contents of reports.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test fails by panicking")]
 
 use mdle_atrv::{Axis, Command, Escape, Garbled, Motion, Packet, Reader, Report, Unreadable};
@@ -25,8 +25,8 @@ fn read(bytes: &[u8]) -> Vec<Result<Owned, Garbled>> {
     found
 }
 
-/// Returns the packet in these bytes. Panics unless they contain exactly one packet, and the packet is written as these
-/// bytes.
+/// Returns the packet in these bytes. Panics unless they contain exactly one packet, and writing the packet gives the
+/// same bytes.
 fn packet(hex: &str) -> Owned {
     let found = read(&bytes(hex));
     assert_eq!(found.len(), 1, "{hex}: {found:?}");
@@ -99,11 +99,11 @@ fn reports_say_what_the_worked_packets_should() {
         let Report::Sonars(echoes) = report else { unreachable!("{report:?}") };
         assert_eq!(echoes.each().collect::<Vec<_>>(), [(0, 1550), (16, 1240), (32, 3100), (48, 775)]);
     });
-    // Its check is 1B.
+    // The checksum is 1B.
     message("1B 02 05 0B 01 07 00 01 23 70 40 00 01 1B 00 1B 03", |_, report| {
         assert_eq!(report, Report::Input { address: 0x40, state: 1 });
     });
-    // A driver has no use for the joystick.
+    // The driver does not use the joystick.
     message("1B 02 03 0C 00 0D 00 01 23 80 00 00 00 00 00 00 00 00 01 A1 1B 03", |_, report| {
         assert_eq!(report, Report::Other);
     });
@@ -117,7 +117,7 @@ fn a_value_that_is_1b_is_marked_or_avoided() {
     assert_eq!((marked.bytes(), stuffed.len()), (&*stuffed, 24));
     let (_, _, _, data) = packet("1B 02 02 00 07 0E 01 00 00 1B 00 40 00 01 86 A0 00 00 88 B8 01 47 1B 03");
     assert_eq!(data[1..5], [0, 0, 0x1B, 0x40]);
-    // As it is, it is 23 bytes long, and no reader can know what is meant.
+    // Without escaping, the frame is 23 bytes long, and no reader can recover its meaning.
     let raw = Packet { port: 2, id: 0, opcode: 7, data: &data }.written(false);
     let hex = "1B 02 02 00 07 0E 01 00 00 1B 40 00 01 86 A0 00 00 88 B8 01 47 1B 03";
     assert_eq!((raw.bytes(), raw.bytes().len()), (&*bytes(hex), 23));
@@ -139,7 +139,8 @@ fn nothing_that_is_avoided_goes_out_and_it_is_nearly_what_was_meant() {
             let (_, _, _, data) = read(frame.bytes())[0].clone().unwrap();
             let sent = u32::from_be_bytes([data[1], data[2], data[3], data[4]]);
             let off = sent.abs_diff(velocity.unsigned_abs());
-            // In a hundred and twenty-eight of 256, or 32,768 of 65,536 around one byte in the middle.
+            // The maximum deviation is 128 of 256 if the second-lowest byte is 1B, and 32,768 of 65,536 if it is the
+            // third-lowest one.
             assert!(off <= 136 || (0x001A_0000..0x001D_0000).contains(&velocity.unsigned_abs()), "{velocity}: {sent}");
             assert_eq!(data[13], u8::from(velocity >= 0));
         }
@@ -160,7 +161,7 @@ fn filler_means_nothing_wherever_it_is() {
     let plain = bytes(AXIS);
     let wanted = read(&plain);
     for place in 0..plain.len() {
-        // Between the two bytes of a mark there is no place for it.
+        // Filler cannot be placed between the two bytes of a mark.
         if place > 0 && plain[place - 1] == 0x1B {
             continue;
         }
@@ -175,9 +176,9 @@ fn after_garbage_the_next_frame_is_found() {
     let wanted = read(&plain);
     let good = wanted[0].clone();
     let behind = |before: &[u8]| read(&[before, &plain].concat());
-    // Noise is told once.
+    // Noise is reported once.
     assert_eq!(behind(b"noise"), [Err(Garbled::Outside(b'n')), good.clone()]);
-    // A second 1B may be the one that counts.
+    // A second 1B may be the first byte of the mark.
     assert_eq!(behind(&[0x1B])[..], wanted);
     assert_eq!(behind(&[0x1B, 0x02, 0x1B]), [Err(Garbled::Mark(0x1B)), good.clone()]);
     assert_eq!(behind(&plain[..20]), [Err(Garbled::Length(0x19, 13)), good.clone()]);
@@ -190,7 +191,7 @@ fn after_garbage_the_next_frame_is_found() {
     assert_eq!(with(20, 0x01), [Err(Garbled::Check(0xC0, 0xC1)), good.clone()]);
     assert_eq!(with(31, 0xC0), [Err(Garbled::Check(0xC1, 0xC0)), good.clone()]);
     assert_eq!(with(5, 0x18), [Err(Garbled::Length(0x18, 0x19)), good.clone()]);
-    // One that never ends is longer than any can be.
+    // A frame without an end becomes longer than any frame can be.
     let endless = [&[0x1B, 0x02][..], &[0x05; 300]].concat();
     assert_eq!(behind(&endless), [Err(Garbled::Length(5, 260)), good]);
 }

@@ -1,4 +1,4 @@
-//! An emulated robot that serves its serial line while a test drives it.
+//! Runs an emulated robot on a thread while a test drives it over its serial line.
 
 use std::io;
 use std::path::Path;
@@ -8,19 +8,19 @@ use std::thread;
 use crate::port::Port;
 use crate::serve::{Emulated, Pace, serve};
 
-/// An emulated robot after a drive, with the results.
+/// Results of a drive, with the emulated robot after it.
 #[derive(Debug)]
 pub struct Driven<R, T> {
-    /// The result of the drive.
+    /// Result of the test's function.
     pub result: T,
-    /// The result of serving the line: an error if the robot closed it.
+    /// Result of serving the line: an error if the robot closed it.
     pub served: io::Result<()>,
     /// Emulated robot after the drive.
     pub robot: R,
 }
 
-/// Guard that sets its flag when dropped, also in a panic: otherwise the test would wait forever for the thread of the
-/// robot.
+/// Guard that sets its flag when dropped, also during a panic; without it, the test would wait forever for the robot's
+/// thread.
 struct SetAtTheEnd<'f>(&'f AtomicBool);
 
 impl Drop for SetAtTheEnd<'_> {
@@ -29,7 +29,7 @@ impl Drop for SetAtTheEnd<'_> {
     }
 }
 
-/// Serves the robot's line on a thread while `drive` runs; `drive` receives the path of the line's device.
+/// Serves the robot's line on a thread while `drive` runs; `drive` receives the path of the device.
 ///
 /// # Errors
 /// Fails if the system has no more pseudo-terminals.
@@ -42,7 +42,8 @@ pub fn driven<R: Emulated + Send, T>(
     let device = port.path().to_owned();
     let (result, served) = thread::scope(|scope| {
         let serving = scope.spawn(|| {
-            // Dropped with this closure: a robot that closes its line closes it for its driver as well.
+            // Moved into the closure so that it is dropped with it: if the robot closes its line, the driver sees it
+            // closed.
             let port = port;
             serve(&mut robot, &port, pace, &|| !over.load(Ordering::Relaxed))
         });

@@ -1,4 +1,4 @@
-//! A test of faults for every robot on a serial line: runs the robot with each fault, and compares the run with the
+//! A test for every robot on a serial line: runs the robot with each fault, and compares the run with the expected
 //! effects in the robot's table.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,12 +16,12 @@ use crate::trial::{FinishedRun, Motion, Trial, ran, started};
 
 /// World time at which a fault begins, in seconds.
 const BEGINS: u64 = 3;
-/// Maximum time from the first order to stop after the fault to the driver's last order.
+/// Maximum time from the first stop order after the fault to the driver's last order.
 const STOPPING: Duration = Duration::from_millis(2500);
 /// Number of simultaneous runs; most of them wait for an answer that never arrives.
 const AT_ONCE: usize = 32;
 
-/// The speed that a driver requests, in turns of 100 ms.
+/// Speed that a driver requests, in turns of 100 ms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Speed {
     /// The robot moves ahead at 0.2 m/s.
@@ -32,10 +32,10 @@ pub enum Speed {
     Rests,
 }
 
-/// The expected output after five seconds of a robot that is driven ahead.
+/// Expected output of a robot that has been driven ahead for five seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Feels {
-    /// The robot has moved a metre straight ahead, and hears the wall before it.
+    /// The robot has moved a metre straight ahead, and hears the wall in front of it.
     Well,
     /// The robot has moved a metre straight ahead, and reports a contact.
     Contact,
@@ -45,7 +45,7 @@ enum Feels {
     Turn,
 }
 
-/// The expected effect of faults on a run. A fault without an explicit time begins after three seconds.
+/// Expected effect of faults on a run. A fault without an explicit time begins after three seconds.
 #[derive(Debug, Clone, Copy)]
 pub struct Effect {
     faults: &'static [&'static str],
@@ -53,15 +53,15 @@ pub struct Effect {
     turns: u32,
     output: Result<Feels, &'static str>,
     stop: Result<(), &'static str>,
-    /// `true` if the stop may also succeed.
+    /// `true` if the stop may also succeed where a failure is expected.
     may_stop: bool,
     motion: Motion,
     orders: &'static [Order],
 }
 
 impl Effect {
-    /// Returns the effect of `faults` on a robot that is driven ahead for five seconds: the driver notices nothing and
-    /// can stop the robot. Then the robot's wheels move as in `motion`, and the last orders that it has received are
+    /// Returns the effect of `faults` on a robot that is driven ahead for five seconds, if the driver notices nothing
+    /// and can stop the robot. After the stop, the wheels' motion is `motion`, and the last orders received are
     /// `orders`.
     #[must_use]
     pub const fn of(faults: &'static [&'static str], motion: Motion, orders: &'static [Order]) -> Self {
@@ -83,20 +83,20 @@ impl Effect {
         Self { speed, turns, ..self }
     }
 
-    /// Expects that the run ends with a fault whose sentence contains `words`.
+    /// Expects that the run ends with a fault whose message contains `words`.
     #[must_use]
     pub const fn fails(self, words: &'static str) -> Self {
         Self { output: Err(words), ..self }
     }
 
-    /// Expects that the stop fails with a sentence that contains `words`.
+    /// Expects that the stop fails with a message that contains `words`.
     #[must_use]
     pub const fn stop_fails(self, words: &'static str) -> Self {
         Self { stop: Err(words), ..self }
     }
 
-    /// Accepts a stop that succeeds as well as one that fails, since the answer to a request may or may not be lost,
-    /// depending on the time of the request.
+    /// Accepts a stop that succeeds as well as one that fails: whether the answer to a request is lost depends on the
+    /// time of the request.
     #[must_use]
     pub const fn may_stop(self) -> Self {
         Self { may_stop: true, ..self }
@@ -120,7 +120,7 @@ impl Effect {
         Self { output: Ok(Feels::Turn), ..self }
     }
 
-    /// Runs the robot, and returns a sentence about a difference from this effect.
+    /// Runs the robot. Returns a sentence that describes the first difference from this effect.
     fn differences<T: Trial>(&self) -> Result<(), String> {
         let faults: Vec<String> = self.faults.iter().map(|fault| begun(fault)).collect();
         let faults: Vec<&str> = faults.iter().map(String::as_str).collect();
@@ -140,8 +140,8 @@ impl Effect {
         [output, stop, motion, self.ordered(&orders)].into_iter().collect()
     }
 
-    /// Compares the last orders with the expected ones, and checks that no order follows long after the first order to
-    /// stop.
+    /// Compares the last orders with the expected ones, and checks that the driver ceases to send orders within
+    /// [`STOPPING`] of the first stop order.
     fn ordered(&self, orders: &[(Duration, Order)]) -> Result<(), String> {
         let kinds: Vec<Order> = orders.iter().map(|(_, order)| *order).collect();
         if !kinds.ends_with(self.orders) {
@@ -168,7 +168,7 @@ impl Speed {
 }
 
 impl Feels {
-    /// Compares `y` with the expected output, and returns a sentence about a difference.
+    /// Compares `y` with the expected output. Returns a sentence that describes the difference.
     fn check(self, y: &Sensed) -> Result<(), String> {
         let (way, heading) = (y.pose().x.0, y.pose().theta.degrees());
         let echo = y.pings(SonarId::new(0)).newest_first().next().and_then(|ping| ping.range);
@@ -184,12 +184,12 @@ impl Feels {
     }
 }
 
-/// Returns the text of a fault with a time; a fault without a time gets the default time, [`BEGINS`].
+/// Returns `fault` with the time [`BEGINS`] appended if it has no time.
 fn begun(fault: &str) -> String {
     if fault.contains('@') { fault.to_owned() } else { format!("{fault}@{BEGINS}") }
 }
 
-/// Compares a result with the expected one; the sentence of an expected fault has to contain the given words.
+/// Compares a result with the expected one; the message of an expected fault has to contain the given words.
 fn same<F: std::fmt::Display>(expected: Result<(), &str>, result: Result<(), F>) -> Result<(), String> {
     match (expected, result.map_err(|fault| fault.to_string())) {
         (Ok(()), Ok(())) => Ok(()),
@@ -199,9 +199,9 @@ fn same<F: std::fmt::Display>(expected: Result<(), &str>, result: Result<(), F>)
 }
 
 /// Runs the robot with the faults of each row of `effects`, and starts a robot with each fault of `refusals`. The
-/// driver has to refuse this start with a sentence that contains the words next to the fault. Returns a sentence for
-/// each row that differs from its run, for each start that is not refused so, and for each fault of the emulator that
-/// is in no row.
+/// driver has to reject each of these starts with a message that contains the given words. Returns a sentence for each
+/// row that differs from its run, for each start that is not rejected in this way, and for each fault of the emulator
+/// that has no row.
 #[must_use]
 pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &'static str)]) -> Vec<String> {
     let run = |effect: &Effect| effect.differences::<T>().map_err(|error| format!("{:?}: {error}", effect.faults));
@@ -227,7 +227,7 @@ pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &
     untrue.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns a sentence for each fault that the robot can have and that is in no row. Late frames are not checked: they
+/// Returns a sentence for each fault that the robot can have and that has no row. Late frames are not checked: they
 /// need a clock, which robots in lockstep do not have.
 fn missing<T: Trial>(effects: &[Effect]) -> Vec<String> {
     let faults = effects.iter().flat_map(|effect| effect.faults).filter_map(|fault| fault.parse::<At>().ok());

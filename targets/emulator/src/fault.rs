@@ -1,5 +1,5 @@
-//! Faults that a user can request of an emulated robot: faults of its line, which do not depend on the robot's
-//! language, and faults of its body.
+//! Faults that a user can request for an emulated robot: faults of its line, which do not depend on the robot's
+//! protocol, and faults of its body.
 
 use std::fmt;
 use std::mem::discriminant;
@@ -10,7 +10,7 @@ use mdle_host::Quantity;
 
 /// The latest time at which a fault can begin.
 const LATEST: Duration = Duration::from_secs(1_000_000);
-/// Maximum value of a fault's number, which counts bytes of noise or milliseconds of delay.
+/// Maximum value of a fault's number (bytes of noise, or milliseconds of delay).
 const MOST: u32 = 60_000;
 
 /// A fault of the line or of the robot's body.
@@ -106,7 +106,7 @@ const KINDS: [(&str, Fault); 24] = [
 pub struct At {
     /// Fault that begins at `time`.
     pub fault: Fault,
-    /// Time since the robot was switched on at which the fault begins, by the clock of the robot's world.
+    /// World time at which the fault begins, counted from when the robot was switched on.
     pub time: Duration,
 }
 
@@ -117,8 +117,8 @@ impl Fault {
         KINDS.into_iter().map(|(_, fault)| fault)
     }
 
-    /// Returns the fault with the number in `text` instead of its default number; `None` if faults of this kind have no
-    /// number, or if `text` is not a valid number.
+    /// Returns the fault with the number in `text` in place of its default number; `None` if faults of this kind have
+    /// no number, or if `text` is not a valid number.
     fn numbered(self, text: &str) -> Option<Self> {
         match self {
             Self::Noise(_) => text.parse().ok().filter(|number| *number <= MOST).map(Self::Noise),
@@ -130,7 +130,7 @@ impl Fault {
     }
 }
 
-/// Reads a whole number of milliseconds up to [`MOST`], with a unit or without; `None` if `text` is something else.
+/// Parses a whole number of milliseconds up to [`MOST`], with or without a unit; `None` if `text` is invalid.
 fn milliseconds(text: &str) -> Option<u32> {
     let most = Duration::from_millis(u64::from(MOST));
     let time = Quantity::duration(text, "ms", Duration::ZERO, most).ok()?;

@@ -8,7 +8,7 @@ use mdle_simulator::Footprint;
 use crate::fault::{Ailment, At, Fault};
 use crate::serve::{Embodied, Emulated};
 
-/// Bytes of noise on an unshielded line, which are repeated as often as needed.
+/// Noise bytes of an unshielded line, repeated as often as needed.
 const NOISE: [u8; 3] = [0xFF, 0x00, 0xA5];
 
 /// An emulated robot with faults.
@@ -20,17 +20,17 @@ pub struct Faulty<R> {
     begun: Vec<Fault>,
     /// Time since the robot was switched on.
     age: Duration,
-    /// The number of frames that the robot has sent.
+    /// Number of frames that the robot has sent.
     count: u32,
-    /// Pieces of late frames, each with the age of the robot at which it arrives.
+    /// Fragments of delayed frames, each with its arrival time, counted from when the robot was switched on.
     late: VecDeque<(Duration, Vec<u8>)>,
 }
 
 impl<R: Emulated> Faulty<R> {
-    /// Returns a robot that has just been switched on and will have `faults`.
+    /// Returns a robot that has just been switched on and develops `faults` at their times.
     ///
     /// # Errors
-    /// Fails if the robot cannot have one of the faults.
+    /// Fails if this kind of robot cannot have one of the faults.
     pub fn new(robot: R, faults: &[At]) -> Result<Self, String> {
         let cannot = faults.iter().find(|at| matches!(at.fault, Fault::Body(ailment) if !R::can_suffer(ailment)));
         if let Some(At { fault, .. }) = cannot {
@@ -48,13 +48,13 @@ impl<R: Emulated> Faulty<R> {
         Ok(faulty)
     }
 
-    /// Returns the robot that has the faults.
+    /// Returns the wrapped robot.
     #[must_use]
     pub fn robot(&self) -> &R {
         &self.robot
     }
 
-    /// Returns the robot itself, without the faults of its line.
+    /// Returns the wrapped robot, without the faults of its line.
     #[must_use]
     pub fn into_robot(self) -> R {
         self.robot
@@ -70,8 +70,7 @@ impl<R: Emulated> Faulty<R> {
         self.begun.contains(&fault)
     }
 
-    /// Returns the number that `of` returns for the first fault that has begun and has such a number; `None` if there
-    /// is no such fault.
+    /// Returns the number of the first active fault for which `of` returns a number; `None` if there is no such fault.
     fn number(&self, of: fn(Fault) -> Option<u32>) -> Option<u32> {
         self.begun.iter().find_map(|fault| of(*fault))
     }
@@ -86,7 +85,7 @@ impl<R: Emulated> Faulty<R> {
         }
     }
 
-    /// Returns the pieces in which `frame` arrives over the faulty line.
+    /// Returns the fragments in which `frame` arrives over the faulty line.
     fn sent(&mut self, mut frame: Vec<u8>) -> Vec<Vec<u8>> {
         self.count = self.count.wrapping_add(1);
         if self.has(Fault::Silence) || self.has(Fault::Lose) && !self.count.is_multiple_of(3) {
@@ -100,7 +99,7 @@ impl<R: Emulated> Faulty<R> {
             frame.splice(..0, NOISE.into_iter().cycle().take(count as usize));
         }
         if self.has(Fault::Double) {
-            // At once: on a line the second would come right behind the first.
+            // In one fragment: on a line, the copy would follow without a gap.
             frame = frame.repeat(2);
         }
         let size = if self.has(Fault::Dribble) { 1 } else { frame.len().max(1) };
@@ -186,7 +185,7 @@ mod tests {
         }
     }
 
-    /// Returns the pieces in which three frames arrive with these faults.
+    /// Returns the fragments in which three frames arrive with these faults.
     fn frames(faults: &[&str]) -> Vec<Vec<u8>> {
         let faults: Vec<At> = faults.iter().map(|text| text.parse().expect("a fault")).collect();
         let mut robot = Faulty::new(Robot::default(), &faults).expect("a robot");

@@ -1,4 +1,4 @@
-//! Shared code of robot emulators in any language: pseudo-terminals, the advance of time, and the emulators' programs.
+//! Shared code of all robot emulators: pseudo-terminals, the advance of time, and the main programs.
 #![forbid(unsafe_code)]
 
 mod driven;

@@ -10,7 +10,7 @@ use mdle_simulator::{Start, StartError};
 
 use crate::fault::At;
 
-/// Values of the options that every robot emulator has.
+/// Values of the command-line options of all robot emulators.
 #[derive(Debug)]
 pub struct Options {
     pub(crate) world: String,
@@ -29,7 +29,7 @@ impl Options {
         of_behavior(of_robots(command.version(env!("CARGO_PKG_VERSION"))))
     }
 
-    /// Returns the options in `matches`, which come from a command with [`Options::arguments`].
+    /// Returns the options in `matches`, which a command with [`Options::arguments`] has parsed.
     #[must_use]
     pub fn of(matches: &ArgMatches) -> Self {
         Self {
@@ -119,7 +119,7 @@ fn of_behavior(command: Command) -> Command {
         )
 }
 
-/// Returns the period of `--lockstep`, which passes with each command.
+/// Parses the period of `--lockstep`, by which the world advances with each command.
 fn step_of_lockstep(text: &str) -> Result<Duration, String> {
     Quantity::duration(text, "ms", Duration::from_millis(1), Duration::from_secs(10))
 }

@@ -1,4 +1,4 @@
-//! Motion commands that an emulated robot has received, which tests read after a run.
+//! Motion commands that an emulated robot has received, for tests to check after a run.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -6,7 +6,7 @@ use std::time::Duration;
 /// Maximum number of stored orders.
 const KEPT: usize = 64;
 
-/// Meaning of a motion command.
+/// Kind of a motion command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     /// The command moves the robot.
@@ -19,12 +19,12 @@ pub enum Order {
     Brake,
 }
 
-/// The last 64 orders that the robot has received, oldest first, each with the age of the robot's world.
+/// The last 64 orders that the robot has received, oldest first, each with the world time at which it arrived.
 #[derive(Debug, Clone, Default)]
 pub struct Orders(VecDeque<(Duration, Order)>);
 
 impl Orders {
-    /// Stores an order that has arrived at the age `age` of the robot's world.
+    /// Stores an order that has arrived at the world time `age`.
     pub fn push(&mut self, age: Duration, order: Order) {
         if self.0.len() >= KEPT {
             self.0.pop_front();
@@ -37,7 +37,7 @@ impl Orders {
         self.0.iter().copied()
     }
 
-    /// Returns the last order, with the age of the world at which it arrived; `None` before the first order.
+    /// Returns the last order and the world time at which it arrived; `None` before the first order.
     #[must_use]
     pub fn last(&self) -> Option<(Duration, Order)> {
         self.0.back().copied()

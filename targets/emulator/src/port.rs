@@ -1,4 +1,4 @@
-//! The pseudo-terminal at which a driver reaches an emulated robot.
+//! The pseudo-terminal through which a driver reaches an emulated robot.
 
 use std::os::fd::OwnedFd;
 use std::os::unix::fs::OpenOptionsExt as _;
@@ -16,7 +16,7 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 #[derive(Debug)]
 pub struct Port {
     ours: OwnedFd,
-    /// The driver's end, kept open so that the line remains when a driver closes it.
+    /// The driver's end, kept open so that the line persists when a driver closes it.
     _theirs: fs::File,
     path: PathBuf,
     link: Option<PathBuf>,
@@ -33,10 +33,11 @@ impl Port {
         unlockpt(&ours)?;
         let name = ptsname(&ours, Vec::new())?.into_string().map_err(io::Error::other)?;
         let path = PathBuf::from(name);
-        // It must not become the terminal of a session that this program may lead: that would end with the line.
+        // Without this, the device could become the controlling terminal of this program's session, which would end
+        // with it.
         let alone = OFlags::NOCTTY.bits() as i32;
         let theirs = fs::File::options().read(true).write(true).custom_flags(alone).open(&path)?;
-        // A line and no terminal: no echo, and no byte means anything.
+        // Raw mode: no echo, and no byte has a special meaning.
         let mut settings = tcgetattr(&theirs)?;
         settings.make_raw();
         tcsetattr(&theirs, OptionalActions::Now, &settings)?;
@@ -45,11 +46,11 @@ impl Port {
         Ok(Self { ours, _theirs: theirs, path, link: None })
     }
 
-    /// Creates a symbolic link to the device at `link`, and replaces a symbolic link that is there. The link is removed
-    /// with the line.
+    /// Creates a symbolic link to the device at `link`, replacing an existing symbolic link. The link is removed when
+    /// the line is dropped.
     ///
     /// # Errors
-    /// Fails if a file that is not a symbolic link is there, or if the link cannot be created.
+    /// Fails if `link` exists and is not a symbolic link, or if the link cannot be created.
     pub fn link(&mut self, link: &Path) -> io::Result<()> {
         if fs::symlink_metadata(link).is_ok_and(|known| known.file_type().is_symlink()) {
             fs::remove_file(link)?;
@@ -70,7 +71,7 @@ impl Port {
         &self.ours
     }
 
-    /// Waits for bytes until `limit` has passed, and passes them to `take`; returns `true` if bytes arrived.
+    /// Waits at most `limit` for bytes, and passes them to `take`; returns `true` if bytes arrived.
     ///
     /// # Errors
     /// Fails if the line failed.
@@ -90,7 +91,7 @@ impl Port {
         Ok(true)
     }
 
-    /// Sends `bytes`. If nobody reads them, bytes are lost once the line is full, as on a wire.
+    /// Sends `bytes`. If no driver reads them, bytes are lost once the line is full, as on a real serial line.
     ///
     /// # Errors
     /// Fails if the line failed.
@@ -110,7 +111,7 @@ impl Port {
 impl Drop for Port {
     fn drop(&mut self) {
         if let Some(link) = &self.link {
-            // It is gone if somebody else has taken it away.
+            // Fails if another program has already removed the link.
             let _ = fs::remove_file(link);
         }
     }

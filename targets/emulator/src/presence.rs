@@ -1,4 +1,5 @@
-//! Detects to which lines a driver is connected: the system reports each opening and closing of a device.
+//! Detects to which lines a driver is connected, using the system's notifications (inotify) that a device was opened or
+//! closed.
 
 use std::mem::MaybeUninit;
 use std::os::fd::OwnedFd;
@@ -8,26 +9,26 @@ use std::{io, iter};
 use rustix::fs::inotify::{self, CreateFlags, ReadFlags, Reader, WatchFlags};
 use rustix::io::Errno;
 
-/// Presence of drivers at the lines, in the order of the lines.
+/// Connection state of the drivers at all lines, in the order of the lines.
 #[derive(Debug)]
 pub(crate) struct Presence {
     watch: OwnedFd,
     lines: Vec<Observation>,
 }
 
-/// The last observed state of a line.
+/// Last observed state of a line.
 #[derive(Debug, Clone, Copy)]
 struct Observation {
-    /// Number by which the system's reports identify the line.
+    /// Number that identifies the line in the system's notifications.
     number: i32,
     /// Number of programs that have the line open.
     users: u32,
-    /// `true` if any program has opened the line.
+    /// `true` if a program has ever opened the line.
     has_begun: bool,
 }
 
 impl Presence {
-    /// Watches for drivers at `devices` from now on.
+    /// Begins to watch for drivers at `devices`.
     ///
     /// # Errors
     /// Fails if the system cannot watch this number of devices.
@@ -45,10 +46,10 @@ impl Presence {
         &self.watch
     }
 
-    /// Reads which drivers have connected or disconnected.
+    /// Updates the state of all lines from the pending notifications.
     ///
     /// # Errors
-    /// Fails if the system no longer reports.
+    /// Fails if the system's notifications cannot be read.
     pub(crate) fn look(&mut self) -> io::Result<()> {
         let mut buffer = [MaybeUninit::uninit(); 1024];
         let mut reader = Reader::new(&self.watch, &mut buffer);
@@ -70,7 +71,7 @@ impl Presence {
         Ok(())
     }
 
-    /// Returns `true` if a driver has been connected to each line.
+    /// Returns `true` if every line has had a connected driver.
     pub(crate) fn all_have_begun(&self) -> bool {
         self.lines.iter().all(|line| line.has_begun)
     }

@@ -1,4 +1,4 @@
-//! The program of an emulated robot: creates its world and lines, and serves them until a signal arrives.
+//! Main program of a robot emulator: creates the world and the lines, and serves them until a signal arrives.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ use crate::several::{Seat, Several};
 /// Maximum size of a world file, in bytes.
 const LARGEST: u64 = 64_000_000;
 
-/// Runs the robots that `made` creates from their bodies, until a signal arrives. `name` is the name of the robot type,
+/// Runs the robots that `made` creates from their bodies, until a signal arrives. `name` is the robot type in messages,
 /// such as `the Scout`; `step` returns the time step of a body at a pace.
 pub fn program<R: Emulated + Embodied>(
     name: &str,
@@ -32,7 +32,7 @@ pub fn program<R: Emulated + Embodied>(
     match run(name, body, options, step, made) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // The status says it as well.
+            // If standard error is closed, the exit status still reports the error.
             let _ = writeln!(std::io::stderr(), "error: {error}");
             ExitCode::from(2)
         }
@@ -65,7 +65,7 @@ fn run<R: Emulated + Embodied>(
         seats.push(Seat { robot, port });
     }
     let mut robots = Several::of(seats).map_err(|error| format!("the lines cannot be watched: {error}"))?;
-    // Without a reader there is still the link.
+    // If standard output is closed, a driver can still use the link.
     let _ = writeln!(std::io::stdout(), "{}", lines.join("\n"));
     let line = robots.serve(pace, &|| !over.load(Ordering::Relaxed));
     if robots.seats().iter().any(|seat| seat.robot.is_closed()) {
@@ -74,8 +74,8 @@ fn run<R: Emulated + Embodied>(
     line.map_err(|error| format!("the line failed: {error}"))
 }
 
-/// Returns the bodies that the options define, each with its name if it has one. Each body has the footprints of the
-/// others.
+/// Returns the bodies that the options define, each with its name if it has one. Each body detects the others by their
+/// footprints.
 fn bodies(
     options: &Options,
     world: &World,
@@ -90,7 +90,7 @@ fn bodies(
     }
     let mut bodies: Vec<(Option<String>, Simulated)> = Vec::new();
     for (number, (name, start)) in (0..).zip(starts) {
-        // Each errs in its own way.
+        // Each robot has its own random errors.
         let make = Make { body, without: Vec::new(), seed: options.seed.map(|seed: u64| seed.wrapping_add(number)) };
         let body = Simulated::with(&make, world, start, step).map_err(|error| error.to_string())?;
         if let Some(name) = &name {
@@ -107,7 +107,7 @@ fn bodies(
     Ok(bodies)
 }
 
-/// Returns an error if another robot has this name, or overlaps the body of this robot.
+/// Returns an error if another robot has this name, or if its body overlaps this body.
 fn refuse(name: &str, body: &Simulated, others: &[(Option<String>, Simulated)]) -> Result<(), String> {
     for (other, known) in others {
         if other.as_deref() == Some(name) {
@@ -121,7 +121,7 @@ fn refuse(name: &str, body: &Simulated, others: &[(Option<String>, Simulated)]) 
     Ok(())
 }
 
-/// Returns the flag that a signal to end this program sets.
+/// Returns a flag that is set when a signal asks this program to end.
 fn over() -> std::io::Result<Arc<AtomicBool>> {
     let over = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {

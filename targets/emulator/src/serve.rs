@@ -1,4 +1,4 @@
-//! Serves an emulated robot at its line: receives requests, sends answers, and advances the world.
+//! Serves an emulated robot at its line: executes requests, sends answers, and advances the world.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -10,25 +10,25 @@ use crate::port::Port;
 
 /// Time step of the world in real time.
 pub const STEP: Duration = Duration::from_millis(10);
-/// Maximum time between two checks of the request to stop.
+/// Interval at which a request to stop is checked.
 pub(crate) const SLICE: Duration = Duration::from_millis(5);
 
-/// A robot emulator: the robot's language and body.
+/// An emulated robot: its protocol and its body.
 pub trait Emulated {
     /// Receives bytes from the line.
     fn push(&mut self, bytes: &[u8]);
 
-    /// Executes the next complete request; returns `None` if there is no complete request. In lockstep, a period passes
-    /// after a request for which this returns `true`, before the answer is sent.
+    /// Executes the next complete request; returns `None` if no request is complete. If it returns `true`, a lockstep
+    /// period passes before the answer is sent.
     fn obey(&mut self) -> Option<bool>;
 
     /// Advances the robot's world by `time`.
     ///
     /// # Errors
-    /// Returns the world's error about an input that it cannot accept, which does not occur here.
+    /// Fails if the simulated world rejects the input, which does not occur here.
     fn pass(&mut self, time: Duration) -> Result<(), String>;
 
-    /// Returns the frames that the robot has to send since the last call.
+    /// Returns the frames that the robot sends since the last call.
     fn take_frames(&mut self) -> Vec<Vec<u8>>;
 
     /// Returns `true` if this kind of robot can have `ailment`.
@@ -38,19 +38,19 @@ pub trait Emulated {
     fn suffer(&mut self, ailment: Ailment);
 }
 
-/// A robot that other robots in its world hear and touch.
+/// A robot that other robots in its world can hear and touch.
 pub trait Embodied {
     /// Returns the area that the robot's body covers.
     fn footprint(&self) -> Footprint;
 
-    /// Moves the other robots to these places.
+    /// Sets the places of the other robots.
     fn see(&mut self, others: &[Footprint]);
 }
 
 /// Pace at which the world advances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pace {
-    /// The world advances by this step with each command, independent of the clock.
+    /// The world advances by this step with each command, independently of the clock.
     Lockstep(Duration),
     /// The world advances by the clock, in steps of [`STEP`].
     Real,
@@ -67,7 +67,8 @@ impl Pace {
     }
 }
 
-/// Serves the robot at this line while `goes_on` returns `true`, and then until it has executed its earlier commands.
+/// Serves the robot at this line while `goes_on` returns `true`, and then until it has executed the commands received
+/// before.
 ///
 /// # Errors
 /// Fails if the line or the robot's world failed.
@@ -92,7 +93,7 @@ pub fn serve<R: Emulated>(robot: &mut R, port: &Port, pace: Pace, goes_on: &dyn 
             if let Pace::Lockstep(step) = pace
                 && passes
             {
-                // What it was told holds for the period that follows, and the answer says how that went.
+                // The command applies to the following period, and the answer reports the state at its end.
                 robot.pass(step).map_err(io::Error::other)?;
             }
             say(robot, port)?;

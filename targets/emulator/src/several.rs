@@ -1,8 +1,8 @@
 //! Several robots in one world, each at its own line: the robots hear and touch each other.
 //!
 //! In lockstep the world advances by a step when each robot with a connected driver has received its command for that
-//! step. The first step waits until a driver has been connected to each robot. A robot whose driver has disconnected no
-//! longer blocks the others, and its own watchdog stops it. In a step the robots move one after another, in their
+//! step. The first step waits until a driver has connected to each robot. A robot whose driver has disconnected no
+//! longer blocks the others, and its own watchdog stops it. In each step the robots move one after another, in their
 //! order.
 
 use std::io;
@@ -19,7 +19,7 @@ use crate::serve::{self, Embodied, Emulated, Pace, SLICE, STEP, say};
 /// A robot and its line.
 #[derive(Debug)]
 pub struct Seat<R> {
-    /// Emulated robot at the line.
+    /// Emulated robot.
     pub robot: R,
     /// Line of the robot.
     pub port: Port,
@@ -33,7 +33,7 @@ pub struct Several<R> {
 }
 
 impl<R> Several<R> {
-    /// Returns the robots, and watches from now on for drivers at their lines.
+    /// Creates the group of robots, and begins to watch for drivers at their lines.
     ///
     /// # Errors
     /// Fails if the system cannot watch this number of lines.
@@ -50,14 +50,15 @@ impl<R> Several<R> {
 }
 
 impl<R: Emulated + Embodied> Several<R> {
-    /// Serves all robots while `goes_on` returns `true`, and then until they have executed their earlier commands.
+    /// Serves all robots while `goes_on` returns `true`, and then until they have executed the commands received
+    /// before.
     ///
     /// # Errors
     /// Fails if a line or the world of a robot failed.
     pub fn serve(&mut self, pace: Pace, goes_on: &dyn Fn() -> bool) -> io::Result<()> {
         let Self { seats, presence } = self;
         match seats.as_mut_slice() {
-            // One alone has nobody to wait for.
+            // A single robot waits for no other.
             [Seat { robot, port }] => serve::serve(robot, port, pace, goes_on),
             several => serve_several(several, presence, pace, goes_on),
         }
@@ -70,7 +71,7 @@ fn serve_several<R: Emulated + Embodied>(
     pace: Pace,
     goes_on: &dyn Fn() -> bool,
 ) -> io::Result<()> {
-    // For each robot: `true` if its command for the coming step has arrived.
+    // `true` for each robot whose command for the next step has arrived.
     let mut have_commands = vec![false; seats.len()];
     let mut next = Instant::now() + STEP;
     loop {
@@ -121,7 +122,7 @@ fn wait<R>(seats: &[Seat<R>], presence: &Presence, limit: Duration) -> io::Resul
     }
 }
 
-/// Executes the requests of a robot until its command for the next step, which sets `has_command`.
+/// Executes the requests of a robot up to its command for the next step, which sets `has_command`.
 fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, has_command: &mut bool) -> io::Result<()> {
     while !*has_command {
         match seat.robot.obey() {
@@ -133,14 +134,15 @@ fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, has_command: &mut bool) -> 
     Ok(())
 }
 
-/// Returns `true` if the world must advance: each robot has had a driver, and no connected driver owes a command.
+/// Returns `true` if the world must advance: each robot has had a driver, every connected driver has sent its command,
+/// and there is at least one command.
 fn is_due(presence: &Presence, have_commands: &[bool]) -> bool {
     let nobody_is_waited_for =
         presence.are_open().zip(have_commands).all(|(is_open, has_command)| *has_command || !is_open);
     presence.all_have_begun() && nobody_is_waited_for && have_commands.contains(&true)
 }
 
-/// Advances the world by a step; each robot sees the other robots at their current places.
+/// Advances the world by one step; each robot detects the other robots at their current places.
 fn pass<R: Emulated + Embodied>(seats: &mut [Seat<R>], step: Duration) -> io::Result<()> {
     let mut footprints: Vec<Footprint> = seats.iter().map(|seat| seat.robot.footprint()).collect();
     for (number, Seat { robot, port }) in seats.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! An emulated robot that serves its line on a thread, in lockstep, while a test observes its state.
+//! Runs an emulated robot on a thread, in lockstep, while a test observes its state.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -19,18 +19,18 @@ pub struct Staged<T> {
     serving: Option<JoinHandle<io::Result<()>>>,
 }
 
-/// State of a robot that a test observes, and requests to the robot's world.
+/// State of a robot that a test observes, and the test's requests.
 #[derive(Debug)]
 struct SharedState<T> {
     now: Mutex<T>,
-    /// Number of periods that still pass without a command.
+    /// Number of periods that are still to pass without a command.
     idle: AtomicU32,
-    /// Fault of the body that begins at the end of the period; `None` if none has been requested.
+    /// Body fault that begins at the end of the period; `None` if no fault is requested.
     ailment: Mutex<Option<Ailment>>,
     is_over: AtomicBool,
 }
 
-/// The robot with the state that it shares with the test.
+/// The robot, with the state that it shares with the test.
 struct Watched<R, T> {
     robot: R,
     look: fn(&R) -> T,
@@ -92,7 +92,7 @@ impl<T> Drop for Staged<T> {
     fn drop(&mut self) {
         self.seen.is_over.store(true, Ordering::Release);
         if let Some(serving) = self.serving.take() {
-            // What went wrong there, who was at the line has noticed.
+            // An error of the robot's thread has already been noticed by the driver.
             let _ = serving.join();
         }
     }
@@ -105,7 +105,7 @@ impl<R: Emulated, T> Emulated for Watched<R, T> {
 
     fn obey(&mut self) -> Option<bool> {
         let outcome = self.robot.obey();
-        // Whatever was said before has been done by then.
+        // All earlier requests have been executed by then.
         if outcome.is_none() {
             for _ in 0..self.seen.idle.load(Ordering::Acquire) {
                 let _ = self.pass(self.period);

@@ -1,4 +1,4 @@
-//! Tests of a driver with its emulated robot, which every robot on a serial line has to pass, and their shared code.
+//! Shared code of the tests that every driver of a robot on a serial line has to pass with its emulated robot.
 
 use std::marker::PhantomData;
 use std::path::Path;
@@ -17,12 +17,12 @@ use crate::orders::Orders;
 use crate::serve::{Emulated, Pace};
 use crate::staged::Staged;
 
-/// Timeout of the driver, in milliseconds, where every answer arrives: longer than any machine needs.
+/// Timeout of the driver when every answer arrives, in milliseconds: longer than any machine needs.
 const LONG: u64 = 60_000;
-/// Timeout of the driver, in milliseconds, where some answers do not arrive.
+/// Timeout of the driver when some answers do not arrive, in milliseconds.
 const PATIENCE: u64 = 3000;
 
-/// World with a wall 4 m before the robot, and other walls far away.
+/// World with a wall 4 m in front of the robot, and other walls far away.
 const HALL: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-3, 3], [-3, -3], [4, -3]]";
 
@@ -56,10 +56,10 @@ pub trait Trial {
     /// Returns a robot that has just been switched on, whose world advances in steps of `step`.
     ///
     /// # Errors
-    /// Returns the world's error about an input that it cannot accept, which does not occur here.
+    /// Fails if the simulated world rejects the input, which does not occur here.
     fn emulated(body: Simulated, step: Duration) -> Result<Self::Emulated, String>;
 
-    /// Returns the true pose of the robot.
+    /// Returns the robot's true pose in the world.
     fn pose(robot: &Self::Emulated) -> Pose;
 
     /// Returns the motion of the robot's wheels.
@@ -74,14 +74,14 @@ fn period<T: Trial>() -> Duration {
     Duration::from_nanos(T::Driver::PERIOD.0)
 }
 
-/// Returns a robot that has just been switched on at the pose `at` of `world`.
+/// Returns a robot that has just been switched on at the pose `at` in `world`.
 fn switched_on<T: Trial>(world: &World, at: Pose, seed: Option<u64>) -> Result<T::Emulated, String> {
     let step = T::step(Pace::Lockstep(period::<T>()));
     let make = Make { body: T::BODY, without: Vec::new(), seed };
     T::emulated(Simulated::with(&make, world, at, step).map_err(|error| error.to_string())?, step)
 }
 
-/// Connects a driver to the robot at this device; the driver waits `answer` milliseconds for an answer.
+/// Connects a driver to the robot at this device, with a timeout of `answer` milliseconds.
 fn connected<T: Trial>(device: &Path, answer: u64) -> Result<Result<T::Driver, FaultOf<T>>, String> {
     let mut config = Configured::<<T::Driver as SerialRobot>::Config>::read(None, device.to_str())?.config;
     *T::Driver::answer(&mut config) = answer;
@@ -92,8 +92,8 @@ fn connected<T: Trial>(device: &Path, answer: u64) -> Result<Result<T::Driver, F
 /// Fault type of the driver of `T`.
 type FaultOf<T> = <<T as Trial>::Driver as Robot>::Error;
 
-/// Stage of the conformance suite: connects the driver to the robot that is currently switched on, whose sensors are
-/// exact and whose wheels do not slip.
+/// Stage of the conformance suite: connects the driver to the robot that is currently switched on. The robot's sensors
+/// are exact, and its wheels do not slip.
 #[derive(Debug)]
 pub struct OnItsLine<T>(Option<Staged<Pose>>, PhantomData<T>);
 
@@ -139,8 +139,8 @@ impl<T: Trial> Stage for OnItsLine<T> {
     }
 }
 
-/// Returns the number of allocations of the driver in fifty turns, as `asked` counts them on this thread. In fifty
-/// turns each sonar pings, and everything that the driver does only in some turns occurs.
+/// Returns the number of allocations of the driver in fifty turns; `asked` returns the number so far on this thread. In
+/// fifty turns each sonar pings, and everything that the driver does only in some turns occurs.
 ///
 /// # Errors
 /// Fails if the robot or its driver failed.
@@ -163,19 +163,19 @@ pub fn memory_asked_for<T: Trial>(asked: fn() -> u64) -> Result<u64, String> {
 
 /// A finished run of a robot with faults in front of a wall.
 pub(crate) struct FinishedRun<T: Trial> {
-    /// The last output, or the fault that ended the run.
+    /// Last output, or the fault that ended the run.
     pub(crate) output: Result<Sensed, FaultOf<T>>,
-    /// The result of the stop.
+    /// Result of stopping the robot.
     pub(crate) stop: Result<(), FaultOf<T>>,
-    /// The emulated robot after the run.
+    /// Emulated robot after the run.
     pub(crate) robot: T::Emulated,
 }
 
-/// Runs a driver that requests `speed`, in m/s, for `turns` turns, and then stops it, as the host always does.
+/// Runs a driver that requests `speed`, in m/s, for `turns` turns, and then stops the robot, as the host always does.
 ///
 /// # Errors
-/// Fails if a fault does not exist, if the driver cannot connect, or if the line closes without a fault that closes it
-/// or stays open despite one.
+/// Fails if a fault is unknown, if the driver cannot connect, if the line closes without a fault that closes it, or if
+/// it stays open despite such a fault.
 pub(crate) fn ran<T: Trial>(
     turns: u32,
     faults: &[&str],
@@ -196,10 +196,10 @@ pub(crate) fn ran<T: Trial>(
     Ok(FinishedRun { output, stop, robot: robot.into_robot() })
 }
 
-/// Returns the result of connecting a driver to a robot that has this fault from the beginning.
+/// Connects a driver to a robot that has this fault from the beginning, and returns the result.
 ///
 /// # Errors
-/// Fails if there is no such fault, or if the line failed.
+/// Fails if the fault is unknown, or if the line failed.
 pub(crate) fn started<T: Trial>(fault: &str) -> Result<Result<(), FaultOf<T>>, String> {
     let Driven { result, served, .. } =
         driven(faulty::<T>(&[fault])?, Pace::Lockstep(period::<T>()), |device| connected::<T>(device, PATIENCE))

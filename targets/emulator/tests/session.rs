@@ -8,7 +8,7 @@ use std::process::Command;
 
 use mdle_emulator::Port;
 
-/// Environment variable that is set if the test runs as the leader of a session.
+/// Environment variable that is set when the test runs as the leader of a session.
 const LEADS: &str = "MDLE_LEADS_A_SESSION";
 
 #[test]
@@ -23,7 +23,7 @@ fn a_line_is_no_terminal_of_a_session() {
     }
     let line = Port::open().unwrap();
     let stat = fs::read_to_string("/proc/self/stat").unwrap();
-    // Behind the name in parentheses: state, parent, group, session, and the number of the terminal.
+    // Fields after the name in parentheses: state, parent, group, session, and the number of the terminal.
     let terminal = stat.rsplit_once(')').unwrap().1.split_whitespace().nth(4).unwrap();
     assert_eq!(terminal, "0", "{}", line.path().display());
 }

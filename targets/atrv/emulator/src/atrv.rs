@@ -1,4 +1,4 @@
-//! An ATRV-mini in a simulated world: the effect of each command, and the reports that the robot sends as time passes.
+//! An ATRV-mini in a simulated world: executes commands, and sends reports as time passes.
 
 mod reports;
 
@@ -11,21 +11,21 @@ use mdle_simulator::{Footprint, Output, Simulated};
 use crate::wire::{Incoming, Request, number};
 use reports::Schedule;
 
-/// Units of the controller per metre.
+/// Number of controller units per metre.
 const A_METRE: f64 = 139_654.7;
 const A_RADIAN: f64 = 49_784.5;
 /// Default time without a command after which the robot stops itself.
 const FAILSAFE: Duration = Duration::from_secs(1);
-/// Difference between the battery's voltage and the controller's report of it, in volts.
+/// Difference between the battery's voltage and the voltage that the controller reports, in volts.
 const ABOVE: f64 = 1.82;
-/// Voltages that the robot reports for a low battery and for a battery on its charger, in hundredths of a volt. The
+/// Voltages that the robot reports for a low battery and for a robot on its charger, in hundredths of a volt. The
 /// charger's voltage is higher than that of any battery.
 const LOW: u32 = 1850;
 const PLUGGED: u32 = 2650;
-/// Distance between the robot's sides, in metres, as in the model of its body.
+/// Distance between the robot's wheel sides, in metres, as in the model of its body.
 const BETWEEN: f64 = 0.4;
 
-/// Returns the time step of the robot's body: the step of `pace`, divided so that no part is longer than [`STEP`].
+/// Returns the time step of the robot's body: the step of `pace`, divided into parts of at most [`STEP`].
 #[must_use]
 pub fn step(pace: Pace) -> Duration {
     let step = pace.step();
@@ -43,7 +43,8 @@ pub struct Atrv {
     outgoing: Vec<Vec<u8>>,
     /// Number of the last report.
     count: u8,
-    /// Commanded speeds, forward and turning, in the robot's units per second, and the last command that arrived.
+    /// Commanded speeds, forward and turning, in the controller's units per second, and the last motion command
+    /// received.
     command: (i32, i32),
     last_command: (i32, i32),
     orders: Orders,
@@ -61,7 +62,7 @@ pub struct Atrv {
     age: Duration,
     /// `true` while the emergency stop is pressed.
     pub emergency: bool,
-    /// Faults of the body that have begun.
+    /// Body faults that have begun.
     ailments: Vec<Ailment>,
     /// Time without a command after which the robot stops itself.
     pub failsafe: Duration,
@@ -72,7 +73,7 @@ impl Atrv {
     /// passes `marks` to [`Incoming::new`].
     ///
     /// # Errors
-    /// Returns the world's error about an input that it cannot accept, which does not occur here.
+    /// Fails if the simulated world rejects the input, which does not occur here.
     pub fn new(mut body: Simulated, step: Duration, marks: bool) -> Result<Self, String> {
         let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
         Ok(Self {
@@ -99,7 +100,7 @@ impl Atrv {
         })
     }
 
-    /// Returns the true pose of the robot.
+    /// Returns the robot's true pose in the world.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose()
@@ -123,8 +124,7 @@ impl Atrv {
         &self.orders
     }
 
-    /// Executes a command, and returns `true` for the command that sets a turn rate, which is the second half of a
-    /// motion.
+    /// Executes a command. Returns `true` if it sets a turn rate, which completes a motion command.
     fn does(&mut self, request: &Request) -> bool {
         if self.has(Ailment::Deaf) {
             return request.port == 2 && request.code == 7 && request.data.first() == Some(&1);
@@ -169,27 +169,27 @@ impl Atrv {
         false
     }
 
-    /// Sets the commanded velocity of an axis. Rotation is the second half of a motion command.
+    /// Sets the commanded velocity of an axis. The velocity of the rotation completes a motion command.
     fn moves(&mut self, axis: u8, velocity: i32) {
         match axis {
             0 => self.last_command.0 = velocity,
             _ => {
                 self.last_command.1 = velocity;
-                // One unit is what drivers say for none.
+                // Drivers send 1 unit in place of 0.
                 let stands = self.last_command.0.abs() <= 1 && velocity == 0;
                 self.orders.push(self.age, if stands { Order::Stand } else { Order::Drive });
             }
         }
         match axis {
             _ if self.has(Ailment::Runaway) => {}
-            // As on the ATRV-Jr: a velocity of 0 does not change the commanded forward speed.
+            // As on the ATRV-Jr, a velocity of 0 does not change the commanded forward speed.
             0 if velocity == 0 => {}
             0 => self.command.0 = velocity,
             _ => self.command.1 = velocity,
         }
     }
 
-    /// Advances the world by one step; `age` is the robot's age at the end of the step.
+    /// Advances the world by one step; `age` is the time since switch-on at the end of the step.
     fn tick(&mut self, age: Duration) -> Result<(), String> {
         self.silence += age.saturating_sub(self.age);
         self.age = age;
@@ -197,7 +197,7 @@ impl Atrv {
         if fails_safe || self.is_braked() {
             self.command = (0, 0);
         }
-        // The body counts as well, and cuts off: a unit more leaves it these very numbers.
+        // The body truncates speeds to whole units: one unit more preserves the commanded values.
         let exactly = |units: i32, one: f64| f64::from(units + units.signum()) / one;
         let input = Twist {
             v: MetersPerSecond(exactly(self.command.0, A_METRE)),
@@ -217,7 +217,7 @@ impl Atrv {
         Ok(())
     }
 
-    /// Moves the axes by the distance from the pose `before` to the current pose of the odometry.
+    /// Moves the axes by the odometry's motion from the pose `before` to the current pose.
     fn goes(&mut self, before: &Pose) {
         let after = &self.sensed.odometry;
         let turn = (after.theta.0 - before.theta.0 + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)

@@ -1,9 +1,8 @@
-//! The rFLEX language as the controller uses it: reads commands from bytes, and writes reports to bytes.
+//! The rFLEX protocol on the controller's side: reads commands from bytes, and writes reports to bytes.
 //!
-//! The code is independent of the driver's code for this language, so that an error in one of the two shows up in
-//! tests.
+//! The code is independent of the driver's implementation of this protocol, so that tests reveal an error in either.
 
-/// Maximum length of a command, in bytes. A longer command has lost its end mark on the line.
+/// Maximum length of a command, in bytes. A longer command has lost its end mark during transmission.
 const LONGEST: usize = 1000;
 
 /// A command: the part of the robot that executes it, its number and its arguments.
@@ -11,7 +10,7 @@ const LONGEST: usize = 1000;
 pub struct Request {
     /// Part of the robot: 1 system, 2 motors, 4 sonars, 5 digital inputs.
     pub port: u8,
-    /// Number of the command among the commands of the part.
+    /// Number of the command within its part.
     pub code: u8,
     /// Arguments of the command.
     pub data: Vec<u8>,
@@ -43,12 +42,12 @@ impl Incoming {
         self.bytes.len()
     }
 
-    /// Returns the next complete command; `None` if there is no complete command. A command with a wrong length or
-    /// check, or with an unknown mark after 1B, is skipped.
+    /// Returns the next complete command, or `None` if no command is complete. Skips commands with a wrong length or
+    /// checksum, or with an unknown byte after 1B.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.bytes.windows(2).position(|two| two == [0x1B, 0x02]) else {
-                // The last byte may be the first half of a beginning.
+                // The last byte may be the first half of a start mark.
                 let keep = usize::from(self.bytes.last() == Some(&0x1B));
                 self.bytes.drain(..self.bytes.len() - keep);
                 return None;
@@ -70,7 +69,7 @@ impl Incoming {
         }
     }
 
-    /// Returns the bytes between the start and end marks of the command at the beginning of the stored bytes.
+    /// Returns the bytes between the start mark and the end mark of the first command in the buffer.
     fn body(&self) -> Body {
         let mut body = Vec::new();
         let mut at = 2;
@@ -100,14 +99,13 @@ impl Incoming {
 enum Body {
     /// The command is not complete yet.
     Open,
-    /// This number of bytes at the beginning does not belong to a command.
+    /// This number of bytes at the beginning of the buffer does not belong to a command.
     Lost(usize),
-    /// The bytes of a complete command, and the number of bytes that it takes on the line.
+    /// Bytes of a complete command, and the number of bytes that the command occupies in the buffer.
     Whole(Vec<u8>, usize),
 }
 
-/// Returns the bytes on the line of the report with this number. A value 1B is followed by 00, and `filler` is inserted
-/// into the report.
+/// Returns the transmitted bytes of a report. A value 1B is followed by 00, and `filler` is inserted into the report.
 #[must_use]
 pub fn report(port: u8, number: u8, code: u8, data: &[u8], filler: &[u8]) -> Vec<u8> {
     let data = data.get(..data.len().min(255)).unwrap_or_default();
@@ -128,7 +126,7 @@ pub fn report(port: u8, number: u8, code: u8, data: &[u8], filler: &[u8]) -> Vec
     bytes
 }
 
-/// Returns the number in four bytes, the highest byte first.
+/// Returns the number in the first four bytes (big-endian).
 #[must_use]
 pub fn number(bytes: &[u8]) -> u32 {
     bytes.iter().take(4).fold(0, |number, byte| number << 8 | u32::from(*byte))

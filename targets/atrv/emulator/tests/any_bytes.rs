@@ -1,5 +1,5 @@
-//! Property tests of the rFLEX language: no bytes stop the reader of the driver or of the emulator, and each reader
-//! reads what the other side writes.
+//! Property tests of the rFLEX protocol: no input makes the reader of the driver or of the emulator fail, and each
+//! reader understands what the other side writes.
 #![allow(clippy::panic, clippy::indexing_slicing, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the seed is seen where a test fails")]
 
@@ -9,7 +9,7 @@ use proptest::collection::vec;
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_oneof, proptest};
 use proptest::test_runner::RngSeed;
 
-/// Returns random bytes, many of which have a meaning in the language.
+/// Returns random bytes, many of which have a meaning in the protocol.
 fn bytes() -> impl Strategy<Value = Vec<u8>> {
     vec(prop_oneof![3 => any::<u8>(), 2 => Just(0x1B), 1 => 0_u8..8], 0..400)
 }
@@ -19,7 +19,7 @@ fn packets(reader: &mut Reader, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     let mut found = Vec::new();
     for byte in bytes {
         if let Ok(Some(packet)) = reader.take(*byte) {
-            // Whatever it says, it says it without a panic.
+            // Any report must be readable or rejected without a panic.
             if let Ok(Report::Sonars(echoes)) = Report::read(&packet) {
                 assert_eq!(echoes.each().count(), (packet.data.len() - 8) / 3);
             }
@@ -35,12 +35,12 @@ fn requests(incoming: &mut Incoming, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     std::iter::from_fn(|| incoming.next_request()).map(|found| (found.port, found.code, found.data)).collect()
 }
 
-/// Returns `noise` with an end mark, which brings a reader out of any state.
+/// Returns `noise` followed by an end mark, which resets a reader from any state.
 fn ended(noise: &[u8]) -> Vec<u8> {
     [noise, &[0x1B, 0x03]].concat()
 }
 
-/// Configuration of each test; prints the random seed, which is shown when the test fails.
+/// Configuration of each test; prints the random seed, which is shown if the test fails.
 fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let rng_seed = match default.rng_seed {
@@ -81,7 +81,7 @@ proptest! {
 
     #[test]
     fn both_readers_find_the_same_packets_in_any_bytes(bytes in bytes()) {
-        // The robot's keeps what has not ended; the driver's waits for more.
+        // Without an end mark, the two readers treat an incomplete packet differently.
         let ended = ended(&bytes);
         assert_eq!(packets(&mut Reader::default(), &ended), requests(&mut Incoming::new(true), &ended));
     }

@@ -1,5 +1,5 @@
-//! Runs the tests that every robot on a serial line has to pass, with the ATRV-mini and its driver, over a
-//! pseudo-terminal in lockstep.
+//! Runs the shared tests of robots on a serial line with the ATRV-mini and its driver, over a pseudo-terminal in
+//! lockstep.
 
 use std::time::Duration;
 
@@ -63,25 +63,26 @@ const EFFECTS: &[Effect] = &[
     Effect::of(&["emergency"], Braked, &[Brake]).fails("brake is set"),
     Effect::of(&["check"], Braked, &[Brake]).fails("the check of a frame").stop_fails("the check of a frame"),
     Effect::of(&["lose"], Braked, &[Brake]).fails("the ATRV does not").stop_fails("the ATRV does not").may_stop(),
-    // A robot that falls silent stands before it is braked.
+    // A robot that falls silent is commanded to stop before its brake is set.
     Effect::of(&["silence"], Braked, &[Stand, Stand, Stand, Stand, Stand, Stand, Stand, Stand, Brake])
         .fails("does not answer")
         .stop_fails("does not answer"),
     Effect::of(&["close"], Moves, &[Drive]).fails("line was cut").stop_fails("line was cut"),
-    // A robot that keeps moving: it obeys as long as it is asked for what it does anyway.
+    // A robot that ignores commands and keeps its speed appears to obey while that speed is commanded.
     Effect::of(&["runaway"], Moves, &[Brake]).stop_fails("still moved"),
     Effect::of(&["runaway"], Moves, &[Brake]).asked(Halts, 50).fails("does not obey").stop_fails("still moved"),
     Effect::of(&["runaway"], Still, &[Brake]).asked(Rests, 42).stop_fails("brake is not set"),
-    // A robot that receives nothing: the controller stops it after a second in which nothing came.
+    // A robot that receives nothing: its controller stops it after a second without commands.
     Effect::of(&["deaf"], Still, &[Drive]).fails("does not receive").stop_fails("does not receive"),
     Effect::of(&["deaf", "runaway"], Moves, &[Drive]).fails("does not receive").stop_fails("still moved"),
-    // The run ends before an unanswered question is a fault, and after the robot has stopped itself.
+    // The run ends before a missing answer is a fault, and after the robot has stopped itself.
     Effect::of(&["deaf"], Still, &[Drive]).asked(Ahead, 42).stop_fails("does not receive"),
     Effect::of(&["hang"], Braked, &[Brake]).fails("clock has not advanced").stop_fails("clock has not"),
     Effect::of(&["no-pings"], Braked, &[Brake]).fails("sonars in direction"),
     Effect::of(&["no-bumpers"], Braked, &[Brake]).fails("does not report its front bumper"),
     Effect::of(&["leap"], Braked, &[Brake]).fails("leap"),
-    // Without an axis it does not report that it stands, without answers not that it is braked.
+    // If the position of an axis is missing, no report shows that the robot is at rest; without status reports, none
+    // shows that its brake is set.
     Effect::of(&["no-translation"], Braked, &[Brake]).fails("how far it has moved, only").stop_fails("how far"),
     Effect::of(&["no-rotation"], Braked, &[Brake]).fails("how far it has turned, only").stop_fails("how far"),
     Effect::of(&["no-status"], Braked, &[Brake]).fails("does not receive").stop_fails("does not receive"),

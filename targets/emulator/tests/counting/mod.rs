@@ -1,4 +1,4 @@
-//! Allocator that counts the allocations of each thread, for tests that a driver's turns allocate nothing.
+//! An allocator that counts the allocations of each thread, for tests that a driver's turns do not allocate.
 #![allow(unsafe_code, reason = "an allocator is unsafe to write, and this one only counts")]
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -15,11 +15,11 @@ pub(crate) fn asked() -> u64 {
 
 struct Counting;
 
-// SAFETY: all is left to the system's allocator.
+// SAFETY: all calls are forwarded to the system's allocator.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ASKED.set(ASKED.get() + 1);
-        // SAFETY: the caller's promise is handed on.
+        // SAFETY: the caller guarantees what the system's allocator requires.
         unsafe { System.alloc(layout) }
     }
 

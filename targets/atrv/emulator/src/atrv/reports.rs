@@ -1,5 +1,4 @@
-//! Reports that the robot sends unasked about the positions of its axes, the echoes of its sonars, and its bumpers, and
-//! the schedule of these reports.
+//! Reports that the robot sends periodically (axis positions, sonar echoes and bumpers), and their schedule.
 
 use std::time::Duration;
 
@@ -9,9 +8,9 @@ use mdle_runtime::Twist;
 use super::{A_METRE, A_RADIAN, Atrv};
 use crate::wire::report;
 
-/// Number of counts of a sonar per metre.
+/// Number of sonar counts per metre.
 const A_RANGE: f64 = 1550.0;
-/// Boards of the body's sonars, six on each: front left, rear left, front right, rear right.
+/// Boards of the body's sonars, with six sonars each: front left, rear left, front right, rear right.
 const BOARDS: [u8; 4] = [0, 1, 3, 2];
 /// Range that a sonar without an echo reports, in the sonar's counts.
 const NOTHING: u16 = 32_766;
@@ -48,7 +47,7 @@ impl Atrv {
     }
 
     fn axis(&self, axis: u8, gone: f64, speed: f64) -> Vec<u8> {
-        // What is more than 32 bits is told without the rest.
+        // A position beyond 32 bits wraps: the report contains its lower 32 bits.
         let position = (gone.round() as i64) as i32;
         let speed = speed.round() as i32;
         [&[0; 4][..], &self.time(), &[axis], &position.to_be_bytes(), &speed.to_be_bytes(), &[0; 8]].concat()
@@ -63,7 +62,7 @@ impl Atrv {
         for ((heard, time), sonar) in self.body.heard().iter().zip(times).zip(0_u8..) {
             if heard.at > *time {
                 *time = heard.at;
-                // Both that look ahead.
+                // The two sonars that point ahead.
                 let range = heard.range.filter(|_| !(is_dead && [0, 12].contains(&sonar)));
                 let counts = range.map_or(NOTHING, |range| (range.0 * A_RANGE).round() as u16);
                 data.push(BOARDS[usize::from(sonar / 6) % 4] * 16 + sonar % 6);

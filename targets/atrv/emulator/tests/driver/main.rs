@@ -1,5 +1,5 @@
-//! Tests of the driver with the emulated robot on a real pseudo-terminal: signs, units and directions, and the messages
-//! about faults on either side.
+//! Tests the driver with the emulated robot on a real pseudo-terminal: signs, units, directions, and the messages about
+//! faults on either side.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod room;
@@ -39,7 +39,7 @@ fn commands_are_executed_and_reported() {
         assert_near("speed", y.velocity().v.0, 0.2, 0.001);
         assert_eq!(y.steering(), STEERING);
         driven(driver, 0.0, 0.0, 10);
-        // A quarter of a circle to the left: what was before it is to its right.
+        // A quarter turn to the left: the wall that was ahead is now on the right.
         let y = driven(driver, 0.0, 0.36, 44);
         assert_near("turn rate", y.velocity().omega.0, 0.36, 0.002);
         let y = driven(driver, 0.0, 0.0, 20);
@@ -61,7 +61,7 @@ fn each_sonar_looks_where_it_should() {
         for (sonar, wall) in [(0, 2.0), (4, 1.5), (8, 3.0), (12, 1.0)] {
             assert_near(&format!("sonar {sonar}"), heard(&y, sonar), wall - 0.28, 0.01);
         }
-        // Pairs that a law holds equal, where it stands along the walls.
+        // Pairs of sonars whose ranges `align` compares: they are equal if the robot stands along the walls.
         for (before, behind) in [(3, 5), (13, 11)] {
             assert_near(&format!("sonars {before} and {behind}"), heard(&y, before) - heard(&y, behind), 0.0, 0.01);
         }
@@ -89,7 +89,7 @@ fn a_robot_is_braked_once_it_stands() {
 
 #[test]
 fn numbers_with_a_1b_in_them_arrive_all_the_same() {
-    // 27 units and 6976: as bytes, 00 00 00 1B and 00 00 1B 40.
+    // 27 and 6976 units contain the byte 1B: 00 00 00 1B and 00 00 1B 40.
     for (v, omega) in [(6976.5 / 139_654.7, 0.0), (0.0, 6976.5 / 49_784.5), (0.1, 27.5 / 49_784.5)] {
         for escape in [Escape::Avoid, Escape::Mark] {
             driven_in(escape, |driver| {
@@ -104,7 +104,7 @@ fn numbers_with_a_1b_in_them_arrive_all_the_same() {
 #[test]
 fn a_robot_without_commands_stops_by_itself() {
     let (mut robot, ()) = with_robot(|driver| {
-        // Dropped at speed, as a program that is killed.
+        // The driver is dropped while the robot moves, as if the program were killed.
         driven(driver, 0.5, 0.0, 10);
     });
     assert_near("speed", robot.velocity().v.0, 0.5, 0.01);
@@ -134,7 +134,7 @@ fn an_emergency_stop_is_reported() {
     });
     assert_eq!(result, (Some(Fault::Braked), Ok(())));
     assert_near("speed", robot.velocity().v.0, 0.0, 1e-9);
-    // One that is pressed from the beginning is told at the start.
+    // A stop that is pressed from the beginning is reported at the start.
     pressed.store(true, Ordering::Relaxed);
     assert_eq!(room::refused_in_emergency(&pressed), Fault::Braked);
 }
@@ -147,13 +147,13 @@ fn silence_garbage_and_other_robots_differ() {
         bytes[10] ^= 1;
         bytes
     };
-    // It tells where it is, and nothing else; or where it was.
+    // Reports that contain only the positions of the axes, with the given time.
     let axes = |time: u8| {
         let axis = |axis: u8| report(2, 33, &[&[0, 0, 0, 0, 0, 0, 0, time][..], &[axis], &[0; 16]].concat());
         [axis(0), axis(1)].concat()
     };
     let time = AtomicU8::new(0);
-    // Each driver waits for seconds, so they do beside each other.
+    // Each driver waits for seconds, so they wait in parallel.
     thread::scope(|scope| {
         scope.spawn(|| assert_eq!(fault_of(|_| Vec::new()), Fault::Line(LineFault::Silent)));
         scope.spawn(|| {
@@ -185,7 +185,7 @@ fn who_comes_too_late_finds_the_robot_stopped() {
     let (velocity, result) = room::overslept(|driver, stands| {
         let go = Twist { v: MetersPerSecond(0.3), ..Twist::default() };
         driver.exchange(&go).unwrap();
-        // The robot gets going, and nobody says anything more.
+        // The robot starts to move and then receives no further command.
         while !stands.load(Ordering::Relaxed) {
             thread::park_timeout(Duration::from_millis(10));
         }

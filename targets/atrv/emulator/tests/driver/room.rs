@@ -1,4 +1,4 @@
-//! Runs drivers on a pseudo-terminal: with the emulated robot in a room, or with a test's own answers.
+//! Runs drivers on a pseudo-terminal, either with the emulated robot in a room or with a test's own answers.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
@@ -14,13 +14,13 @@ use mdle_runtime::{Robot as _, Twist};
 use mdle_simulator::{Body, Make, Simulated, World};
 
 pub(crate) const PERIOD: Duration = Duration::from_millis(100);
-/// Walls 2 m ahead of the robot, 1.5 m to its left, 1 m to its right and 3 m to its rear.
+/// Room with walls 2 m ahead of the robot, 1.5 m to its left, 1 m to its right and 3 m behind it.
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[2, -1], [2, 1.5], [-3, 1.5], [-3, -1], [2, -1]]";
 
-/// Maximum time to wait for a report, in milliseconds: longer than any machine takes.
+/// Timeout for a report, in milliseconds: longer than any machine needs.
 const LONG: u64 = 60_000;
-/// Maximum time to wait for a report that never arrives, in milliseconds.
+/// Timeout for a report that never arrives, in milliseconds.
 const SHORT: u64 = 500;
 
 /// Guard that ends the robot's thread when a test ends, even if the test fails.
@@ -35,13 +35,12 @@ impl Drop for Ends<'_> {
 /// Steering that differs from the default.
 pub(crate) const STEERING: Steering = Steering { rotate: 1.0, align: 3.0, avoid: 1.5 };
 
-/// Returns the configuration of a driver on this line that waits at most `answer` milliseconds for each report.
+/// Returns the configuration of a driver on this line with a timeout of `answer` milliseconds for each report.
 fn config(port: &Port, answer: u64) -> Config {
     Config { answer, steering: STEERING, ..Configured::read(None, port.path().to_str()).unwrap().config }
 }
 
-/// The robot under the control of a test, which can press its emergency stop and learns when the robot has come to
-/// rest.
+/// The robot in a test: the test can press its emergency stop, and is informed when the robot has come to rest.
 struct Watched<'a> {
     robot: Emulated,
     emergency: &'a AtomicBool,
@@ -78,7 +77,7 @@ impl mdle_emulator::Emulated for Watched<'_> {
     fn suffer(&mut self, _: Ailment) {}
 }
 
-/// Runs `drive` with a robot in the room, and returns the robot and the result.
+/// Runs `drive` with a driver of a robot in the room, and returns the robot and the result.
 fn in_the_room<T>(
     pace: Pace,
     [emergency, stands]: [&AtomicBool; 2],
@@ -93,14 +92,14 @@ fn in_the_room<T>(
     change(&mut config);
     let mut robot = Emulated::new(body, step(pace), config.escape == Escape::Mark).unwrap();
     if pace == Pace::Real {
-        // Who stops it is the driver.
+        // Only the driver is to stop the robot.
         robot.failsafe = Duration::MAX;
     }
     let mut watched = Watched { robot, emergency, has_moved: false, stands };
     let result = thread::scope(|scope| {
         let serving = scope.spawn(|| serve(&mut watched, &port, pace, &|| !over.load(Ordering::Relaxed)));
         let ends = Ends(&over);
-        // By the clock the start is looked at so often that no machine is too slow for it.
+        // In real time, the start is checked so often that no machine is too slow for it.
         let (clock, period) = match pace {
             Pace::Real => (Clock::Wall, Duration::from_millis(2)),
             Pace::Lockstep(period) => (Clock::Stepped(period), period),
@@ -146,14 +145,14 @@ pub(crate) fn refused_in_emergency(pressed: &AtomicBool) -> Fault {
     in_the_room(Pace::Lockstep(PERIOD), lights, |_| {}, |driver| driver.map(|_| ()).unwrap_err()).1
 }
 
-/// Runs `drive` with a robot in real time, and with a flag that is set once the robot has come to rest. Returns the
+/// Runs `drive` with a robot in real time, and with a flag that is set when the robot has come to rest. Returns the
 /// robot's speed at the end, in m/s, and the result of `drive`.
 pub(crate) fn overslept<T>(drive: impl FnOnce(&mut Atrv, &AtomicBool) -> T) -> (f64, T) {
     let (emergency, stands) = (AtomicBool::new(false), AtomicBool::new(false));
     let (robot, result) = in_the_room(
         Pace::Real,
         [&emergency, &stands],
-        // Longer than any machine is away.
+        // Longer than any machine suspends a test.
         |config| config.watchdog = 3000,
         |driver| drive(&mut driver.unwrap(), &stands),
     );
@@ -181,7 +180,7 @@ pub(crate) fn fault_of(answers: impl Fn(&Request) -> Vec<u8> + Sync) -> Fault {
     })
 }
 
-/// Returns the result of 20 turns with a robot whose reports arrive in pieces, after noise.
+/// Returns the result of 20 turns with a robot whose reports arrive in fragments, after noise.
 pub(crate) fn dribbled(period: Duration) -> Result<(), Fault> {
     let world = World::parse("room", ROOM).unwrap();
     let body = Make { body: Body::Atrv, without: Vec::new(), seed: None };
