@@ -1,4 +1,4 @@
-//! Commands to a Scout that the driver uses, as frames. See docs/src/reference/protocols.md, 1.3.
+//! Frames of the commands that the driver sends to a Scout. See docs/src/reference/protocols.md, 1.3.
 
 use crate::frame::{Arguments, Frame};
 use crate::number;
@@ -17,11 +17,11 @@ pub enum Command {
     Limp,
     /// Set the current position and heading to zero (ZR).
     Zero,
-    /// Stop when no command has arrived for this number of seconds; 0 switches the watchdog off (CONF_TM).
+    /// Stop if no command arrives for this number of seconds; 0 switches the watchdog off (CONF_TM).
     Watchdog(u8),
     /// Ping with these sonars, one after the other, at an interval given in units of 4 ms; 255 ends the list (CONF_SN).
     Sonars(u8, [u8; SONARS]),
-    /// Maximum accelerations of the right and the left wheel, a tenth of an inch per second squared (AC).
+    /// Maximum accelerations of the right and the left wheel, in tenths of an inch per second squared (AC).
     Accelerations(u16, u16),
     /// Speeds of the right and the left wheel (VM).
     Velocities(i16, i16),
@@ -51,7 +51,7 @@ impl Command {
             Self::State | Self::Stop | Self::Limp | Self::Zero => {}
             Self::Watchdog(seconds) => arguments.push(seconds),
             Self::Sonars(rate, order) => arguments.extend([rate].into_iter().chain(order)),
-            // The third axis is the turret, which a Scout has not.
+            // The third axis is the turret, which a Scout does not have.
             Self::Accelerations(right, left) => {
                 arguments.extend([right, left, 0].map(u16::to_le_bytes).into_iter().flatten())
             }

@@ -18,7 +18,7 @@ mdle_serial::configuration! {
     acceleration: f64 = 2.0, in 0.1..=10.0, "m/s²" "of a wheel", unverified;
     /// Time without a command after which the robot stops itself, in seconds.
     watchdog: u8 = 1, in 1..=60, "s" "without a command until the robot stops itself";
-    /// Maximum time for an answer, in milliseconds.
+    /// Timeout for an answer, in milliseconds.
     answer: u64 = 300, in 50..=400, "ms" "that an answer may take";
     /// Maximum time without an advance of the robot's clock before its data are stale, in milliseconds; 0 for no limit.
     stale: u64 = 500, in 0..=60_000, "ms" "that its clock may stand, 0 for ever", unverified;
@@ -30,7 +30,7 @@ mdle_serial::configuration! {
         "ms" "that it may move faster than commanded, or in the opposite direction, 0 for no limit", unverified;
     /// Sonars that ping, in the order of their pings.
     sonars: Vec<u8> = ORDER.to_vec(), "" "which ping, in this order";
-    /// Time between two pings, in milliseconds.
+    /// Interval between two pings, in milliseconds.
     gap: u64 = 60, in 4..=1020, "ms" "between two pings";
     /// Distance of the sonars from the body's centre, in metres.
     ring_radius: f64 = 0.19, in 0.0..=0.5, "m" "from the centre to a sonar", unverified;
@@ -39,7 +39,7 @@ mdle_serial::configuration! {
 }
 
 impl Config {
-    /// Checks the conditions that the ranges of single values cannot express.
+    /// Checks the conditions that the range of a single value cannot express.
     fn check(&self) -> Result<(), String> {
         if !self.gap.is_multiple_of(4) {
             return Err(format!("`gap` is {}, and the robot counts it in steps of 4 ms", self.gap));
@@ -53,13 +53,13 @@ impl Config {
         Ok(())
     }
 
-    /// Returns the order of the sonars in the robot's format: unused places contain 255.
+    /// Returns the order of the sonars in the robot's format, in which unused entries are 255.
     #[must_use]
     pub fn order(&self) -> [u8; 16] {
         std::array::from_fn(|place| self.sonars.get(place).copied().unwrap_or(255))
     }
 
-    /// Returns the maximum time for an answer.
+    /// Returns the timeout for an answer.
     #[must_use]
     pub const fn patience(&self) -> Duration {
         Duration::from_millis(self.answer)

@@ -1,5 +1,5 @@
-//! The driver of a Scout, as a kinetic state machine: each input is a velocity command, whose answer is the output
-//! (paper, Eq. 1).
+//! The driver of a Scout, as a kinetic state machine: each input is a velocity command, and the answer to it is the
+//! output (paper, Eq. 1).
 
 use std::time::{Duration, Instant};
 
@@ -20,20 +20,19 @@ use crate::wheels::{self, WHEEL_BASE};
 
 /// Radius of the body, in metres.
 const RADIUS: Meters = Meters(0.205);
-/// Number of consistent pings that confirm a free way on a robot whose sonars fire in turn.
+/// Number of consistent pings that confirm a free path on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
-/// Minimum time that the robot has to come to rest before its motors are released; from 1 m/s it needs 0.5 s.
+/// Minimum time to wait for the robot to come to rest before its motors are released; from 1 m/s it needs 0.5 s.
 const STOPPING: Duration = Duration::from_millis(600);
-/// Maximum time for the last answer of a robot that has not answered before.
+/// Timeout for the last answer of a robot that has not answered before.
 const ANSWER: Duration = Duration::from_millis(150);
-/// Maximum speed of a wheel that is held and jitters, in tenths of an inch per second.
+/// Maximum jitter of the speed of a wheel that holds its position, in tenths of an inch per second.
 const JITTER: u16 = 4;
-/// Time between two checks that the robot is at rest.
+/// Interval at which the driver checks whether the robot is at rest.
 const LOOK: Duration = Duration::from_millis(20);
-/// Time between two stop commands to a robot that does not answer.
+/// Interval at which the stop command is repeated to a robot that does not answer.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Maximum time in which the robot sets its position to zero; newer versions of the manufacturer's library wait much
-/// longer.
+/// Minimum timeout for setting the position to zero; newer versions of the manufacturer's library wait much longer.
 const ZEROING: Duration = Duration::from_secs(5);
 
 /// Driver of a Scout that answers.
@@ -46,7 +45,7 @@ pub struct Scout {
     ring: Ring,
     /// `true` if the new order of the sonars has not been sent to the robot yet.
     is_reordered: bool,
-    /// Drift of the odometry, measured by means of walls.
+    /// Drift of the odometry, measured at walls.
     compass: Compass,
     freshness: Freshness,
     obedience: Obedience,
@@ -57,23 +56,23 @@ pub struct Scout {
     pub(crate) paths: PathStore,
 }
 
-/// Returns the time that a turn needs on the line: a command, and the state that answers it.
+/// Returns the transmission time of a turn: a command, and the state in its answer.
 pub(crate) fn turn_takes() -> Duration {
     let command = Command::Velocities(0, 0).frame().bytes().len();
     time_of(command + state::LENGTH + frame::AROUND, SPEED)
 }
 
 impl Scout {
-    /// Opens the line and prepares the robot: the robot is at rest at position zero, its watchdog is armed, and each
-    /// sonar has pinged.
+    /// Opens the line and prepares the robot. Then the robot is at rest at position zero, its watchdog is armed, and
+    /// each sonar has pinged.
     ///
     /// # Errors
-    /// Fails if there is no line or no robot, or if the robot's emergency stop is pressed.
+    /// Fails if the line or the robot is missing, or if the robot's emergency stop is pressed.
     pub fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
         let line = Line::open(&config.device)?;
         let ring = Ring::new(&config.sonars, Nanos(config.gap.saturating_mul(1_000_000)));
         let (odometer, freshness, times) = (Odometer::default(), Freshness::default(), Times::new(clock));
-        // Each wheel brakes for both: where it goes forward and turns, half as hard for either.
+        // Forward motion and rotation share each wheel's deceleration: in the worst case, each gets half of it.
         let brakes = config.acceleration / 2.0;
         let obedience = Obedience::new(brakes, brakes, Duration::from_millis(config.disobey));
         let mut scout = Self {
@@ -94,7 +93,7 @@ impl Scout {
             Ok(()) => Ok(scout),
             Err(Fault::Ended(_)) => Err(Fault::Ended(scout.stop().err().map(Box::new))),
             Err(fault) => {
-                // What led here says more than what comes of this.
+                // The earlier fault is reported, whether or not the stop succeeds.
                 let _ = scout.stop();
                 Err(fault)
             }
@@ -109,7 +108,7 @@ impl Scout {
     fn prepare(&mut self, period: Duration, request: &StopRequest) -> Result<(), Fault> {
         let go_on = || if request.is_made() { Err(Fault::Ended(None)) } else { Ok(()) };
         go_on()?;
-        // Another program may have left it moving.
+        // Another program may have left the robot moving.
         self.command(Command::Velocities(0, 0))?;
         self.command(Command::Watchdog(self.config.watchdog))?;
         let acceleration = libm::trunc(self.config.acceleration / wheels::UNIT) as u16;
@@ -123,7 +122,7 @@ impl Scout {
             left = left.saturating_sub(period);
             self.command(Command::State)?;
         }
-        // It stands by now.
+        // The robot is at rest by now.
         let (asked, limit) = (Moment::now(), ZEROING.max(self.config.patience()));
         self.line.ask_while(&Command::Zero, Instant::now() + limit, &go_on)?;
         if self.clock == Clock::Wall && asked.elapsed() > limit {
@@ -142,8 +141,7 @@ impl Scout {
     /// Waits until the robot is at rest.
     ///
     /// # Errors
-    /// Fails if the robot does not answer, or if the state requested at the end of the time limit shows that it still
-    /// moves.
+    /// Fails if the robot does not answer, or if it still moves when the time limit has passed.
     fn stands(&mut self, begun: Instant, limit: Duration) -> Result<(), Fault> {
         let mut was_slow = false;
         for looks in 1.. {
@@ -152,7 +150,7 @@ impl Scout {
             let state = State::read(&frame.arguments).ok_or(Fault::Short(frame.arguments.len()))?;
             let fastest = state.right.unsigned_abs().max(state.left.unsigned_abs());
             let is_slow = fastest <= JITTER;
-            // One that still brakes has come to rest by the next look.
+            // A robot that is still braking comes to rest before the next check.
             if fastest == 0 || was_slow && is_slow {
                 return Ok(());
             }
@@ -165,13 +163,13 @@ impl Scout {
         Err(Fault::Moves)
     }
 
-    /// Sends a command at the end of a run; the robot has `patience` to answer.
+    /// Sends a command at the end of a run, with the timeout `patience` for the answer.
     fn at_the_end(&mut self, command: Command, patience: Duration) -> Result<Frame, Fault> {
         self.line.ask(&command, Instant::now() + patience)
     }
 
-    /// Sends the stop command repeatedly to a robot that does not answer, for the time that the robot needs to come to
-    /// rest. The robot may receive commands even if its answers are lost.
+    /// Sends stop commands to a robot that does not answer, for the time that it needs to come to rest. Commands may
+    /// reach the robot even if its answers are lost.
     fn insist(&mut self, begun: Instant, limit: Duration) {
         for attempts in 1.. {
             let deadline = Instant::now() + AGAIN;
@@ -183,19 +181,19 @@ impl Scout {
     }
 
     /// Returns `true` if the robot's watchdog has stopped it since the last command: the robot must not move again
-    /// without a message to the user.
+    /// before the user has been informed.
     fn has_overslept(&self) -> bool {
         self.clock == Clock::Wall && self.commanded.is_some_and(|last| last.elapsed() >= self.watchdog())
     }
 
-    /// Sends a command, and returns the state that answers it.
+    /// Sends a command, and returns the state in its answer.
     fn command(&mut self, command: Command) -> Result<State, Fault> {
         if self.has_overslept() {
             return Err(Fault::Overslept(self.config.watchdog));
         }
         self.commanded = Some(Moment::now());
         let frame = match self.line.ask(&command, Instant::now() + self.config.patience()) {
-            // This program was suspended while it waited.
+            // This program was suspended while it waited for the answer.
             Err(Fault::Line(LineFault::Silent)) if self.has_overslept() => {
                 return Err(Fault::Overslept(self.config.watchdog));
             }
@@ -206,14 +204,14 @@ impl Scout {
     }
 }
 
-/// Returns the battery's voltage and state. The battery feeds both supplies: the lower voltage counts.
+/// Returns the battery's voltage and state. The battery feeds both supplies, and the lower voltage counts.
 fn supply(state: &State, config: &Config) -> Supply {
     let [cpu, motor] = state.volts();
     let battery = Volts(cpu.0.min(motor.0));
     Supply { battery, is_low: battery.0 < config.low_battery, is_plugged: state.is_plugged() }
 }
 
-/// Name of the setting that orders the sonars.
+/// Name of the setting for the order of the sonars.
 const SONARS: &str = "sonars";
 
 impl RobotSettings for Scout {
@@ -287,17 +285,17 @@ impl Robot for Scout {
         let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
         let patience = self.config.patience();
         let stopped = self.at_the_end(Command::Stop, patience);
-        // Let go while it moves, it would roll on.
+        // If its motors were released while it moves, the robot would roll on.
         let stands = stopped.and_then(|_| self.stands(begun, limit));
         let answers = matches!(stands, Ok(()) | Err(Fault::Moves));
         if !answers {
             self.insist(begun, limit);
         }
-        // Its motors are let go whether or not it has understood.
+        // The motors are released even if the robot has not answered.
         let let_go =
             self.at_the_end(Command::Limp, if answers { patience } else { self.clock.patience(ANSWER).min(patience) });
         if let_go == Err(Fault::Line(LineFault::Closed)) {
-            // One that cannot be heard may hear.
+            // A robot whose answers are lost may still receive commands.
             let _ = self.line.say(&Command::Limp, Instant::now() + ANSWER);
         }
         stands.and(let_go.map(|_| ()))

@@ -11,11 +11,11 @@ use crate::frame::Garbled;
 pub enum Fault {
     /// The run was asked to end while the robot was being prepared. Contains a fault if the robot could not be stopped.
     Ended(Option<Box<Self>>),
-    /// The line cannot be opened, is closed, or no answer arrived in time.
+    /// The line cannot be opened or is closed, or no answer arrived in time.
     Line(LineFault),
     /// The received bytes are not a frame.
     Garbled(Garbled),
-    /// A command received an answer of another type.
+    /// The answer does not have the type of the command.
     Wrong {
         /// Type of the command.
         asked: u8,
@@ -24,7 +24,7 @@ pub enum Fault {
     },
     /// The robot refused a command of this type.
     Refused(u8),
-    /// The answer has the right type, but only this number of bytes, too few for a state.
+    /// The answer has the right type, but has only this number of bytes, too few for a state.
     Short(usize),
     /// The robot's emergency stop is pressed.
     EmergencyStop,

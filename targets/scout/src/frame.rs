@@ -1,5 +1,5 @@
-//! Frames on the Scout's line: start, length, type, arguments, sum and end, with no byte stuffing.
-//! See docs/src/reference/protocols.md, 1.2.
+//! Frames on the Scout's line: start, length, type, arguments, checksum and end, without byte stuffing. See
+//! docs/src/reference/protocols.md, 1.2.
 
 use arrayvec::ArrayVec;
 
@@ -7,17 +7,17 @@ use arrayvec::ArrayVec;
 pub(crate) const START: u8 = 0x01;
 /// Last byte of each frame.
 const END: u8 = 0x5C;
-/// Number of bytes in a frame besides its arguments: start, two bytes of length, type, sum, end.
+/// Number of bytes in a frame besides its arguments: start, two bytes of length, type, checksum, end.
 pub(crate) const AROUND: usize = 6;
-/// Maximum accepted length of an answer. Real answers are far shorter; the reader must not wait for a damaged length.
+/// Maximum accepted length of an answer. Real answers are far shorter; the limit avoids waiting for a corrupted length.
 const LONGEST: usize = 255;
-/// Maximum number of argument bytes: the length includes type and sum.
+/// Maximum number of argument bytes: the length includes type and checksum.
 const MOST: usize = LONGEST - 2;
 
-/// Arguments of a frame, stored without allocation.
+/// Arguments of a frame, stored without heap allocation.
 pub type Arguments = ArrayVec<u8, MOST>;
 
-/// A received frame: its type, and its arguments in the order of the line.
+/// A received frame: its type, and its arguments as transmitted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
     /// Type of the command that the frame answers or contains.
@@ -29,13 +29,13 @@ pub struct Frame {
 /// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// The first byte is this byte instead of the start byte of a frame.
+    /// The first byte is this byte, not the start byte of a frame.
     Start(u8),
     /// The frame has this length, which is invalid.
     Length(u16),
-    /// The sum of the bytes is the first number, but the frame contains the second number.
+    /// Checksum mismatch: checksum of the received bytes, and checksum in the frame.
     Sum(u8, u8),
-    /// The byte after the sum is this byte instead of the end byte of a frame.
+    /// The byte after the checksum is this byte, not the end byte of a frame.
     End(u8),
 }
 
@@ -50,16 +50,16 @@ impl core::fmt::Display for Garbled {
     }
 }
 
-/// Returns the sum of `bytes`, modulo 256.
+/// Returns the checksum of `bytes`: their sum modulo 256.
 fn sum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
 }
 
 impl Frame {
-    /// Returns the frame's bytes on the line.
+    /// Returns the transmitted bytes of the frame.
     #[must_use]
     pub fn bytes(&self) -> ArrayVec<u8, { MOST + AROUND }> {
-        // Type and sum count.
+        // The length includes type and checksum.
         let length = self.arguments.len() as u8 + 2;
         let mut bytes: ArrayVec<u8, _> =
             [START, length, 0, self.kind].into_iter().chain(self.arguments.iter().copied()).collect();
@@ -68,11 +68,10 @@ impl Frame {
         bytes
     }
 
-    /// Returns the frame at the beginning of `bytes`, with the number of its bytes; `None` if the frame is not
-    /// complete.
+    /// Returns the frame at the beginning of `bytes` and its length in bytes; `None` if the frame is incomplete.
     ///
     /// # Errors
-    /// Fails if the bytes do not begin a frame, whatever bytes follow.
+    /// Fails if `bytes` is not the beginning of a valid frame.
     pub fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, Garbled> {
         match bytes.first() {
             None => return Ok(None),

@@ -1,9 +1,9 @@
-//! Detects stale data: a Scout's clock has to advance, and its sonars' ranges have to change as the robot moves. See
+//! Detects stale data: a Scout's clock has to advance, and its sonars' ranges have to change while the robot moves. See
 //! docs/src/reference/protocols.md, 1.8.
 //!
-//! A state answers a command, and is as recent as the command, unless the controller repeats an old state; the clock in
-//! the state reveals this. No clock shows when the sonars pinged. But while the robot turns, or moves towards or away
-//! from an object that a sonar hears, the range of at least one sonar changes if the sonars ping.
+//! A state answers a command and is as recent as the command, unless the controller repeats an old state, which the
+//! clock in the state reveals. The state does not contain the times of the pings. But while the robot turns, or moves
+//! towards or away from an object that a sonar hears, the range of at least one sonar changes if the sonars ping.
 
 use mdle_runtime::{Nanos, Pose, Radians};
 
@@ -13,11 +13,11 @@ use crate::state::State;
 
 /// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
-/// Turn of the robot, in radians, after which at least one range must have changed: each sonar then faces in the
-/// direction in which the fourth sonar after it faced before.
+/// Angle, in radians, by which the robot may turn before at least one range must have changed: each sonar then faces in
+/// the direction in which the fourth sonar after it faced before.
 const TURN: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Last data of the robot that differed from the previous data, and its motion since then.
+/// Last data that differed from the previous data, and the robot's motion since then.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Freshness {
     /// Last new time of the robot's clock, and the time at which it was received; `None` before the first state.
@@ -33,7 +33,7 @@ pub(crate) struct Freshness {
 
 impl Freshness {
     /// Checks the state that arrived at `at` and reports the robot at `pose`. Returns the time for which the robot's
-    /// clock has not advanced; zero if the configuration lets it stand for ever.
+    /// clock has not advanced; zero if the configuration sets no limit for it.
     ///
     /// # Errors
     /// Fails if the clock has not advanced, or if the sonars' ranges have not changed, for longer than the
@@ -51,7 +51,8 @@ impl Freshness {
         }
         let was = std::mem::replace(&mut self.pose, pose);
         self.turn += Radians(pose.theta.0 - was.theta.0).wrapped().0.abs();
-        // Of what is beside it the way changes nothing.
+        // Driving straight does not change the range of an object beside the robot, so only the sonars in front and
+        // back count.
         if [0, 8].iter().any(|sonar| config.sonars.contains(sonar) && hears(state, *sonar)) {
             self.way += libm::hypot(pose.x.0 - was.x.0, pose.y.0 - was.y.0);
         }
@@ -73,8 +74,8 @@ mod tests {
     use super::*;
     use crate::config::Configured;
 
-    /// Returns the index of the first of these states, a second apart, that is refused, and the fault. A state consists
-    /// of the range ahead, the range to the left, x in metres, the heading in degrees, and the clock.
+    /// Returns the index of the first of these states, a second apart, that is rejected, and the fault. A state
+    /// consists of the range ahead, the range to the left, x in metres, the heading in degrees, and the clock.
     fn refused(states: &[(u8, u8, f64, f64, u32)]) -> Option<(usize, Fault)> {
         let config = Config { stale: 1500, ..Configured::read(None, None).unwrap().config };
         let mut freshness = Freshness::default();
@@ -102,13 +103,13 @@ mod tests {
     fn sonars_that_say_the_same_where_they_must_not_are_old() {
         let driven = |ahead, left| [0.0, 0.6, 1.2, 1.8].map(|x| (ahead, left, x, 0.0, (x * 10.0) as u32));
         assert_eq!(refused(&driven(70, NOTHING)), Some((2, Fault::Frozen)));
-        // A wall beside it stays as far away as it is; and nothing is no more than nothing.
+        // The range of a wall beside the robot does not change, and neither does a range without an echo.
         assert_eq!(refused(&driven(NOTHING, 70)), None);
         let turned =
             |left| [0.0, 50.0, 170.0, -170.0, 0.0].map(|degrees| (NOTHING, left, 0.0, degrees, degrees as u32));
         assert_eq!(refused(&turned(70)), Some((2, Fault::Frozen)));
         assert_eq!(refused(&turned(NOTHING)), None);
-        // It stands.
+        // The robot is at rest.
         assert_eq!(refused(&[0, 1, 2, 3].map(|clock| (70, 70, 0.0, 0.0, clock))), None);
     }
 

@@ -1,7 +1,7 @@
-//! The Nomadic Super Scout II as a target: its serial language, its driver, and its alphabet.
+//! The target for the Nomadic Super Scout II: the serial protocol, the driver, and the alphabet.
 //!
 //! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has.
-//! Tests and tools use the language ([`Command`], [`Frame`], [`State`]) and the driver, [`Scout`].
+//! Tests and tools use the protocol ([`Command`], [`Frame`], [`State`]) and the driver, [`Scout`].
 #![forbid(unsafe_code)]
 
 pub mod alphabet;

@@ -1,4 +1,4 @@
-//! The serial line to a Scout, over which commands receive their answers.
+//! The serial line to a Scout: sends commands and receives their answers.
 
 use std::time::{Duration, Instant};
 
@@ -11,9 +11,9 @@ use crate::reader::{CHUNK, Reader};
 
 /// Speed of the line in bits per second, 8N1.
 pub(crate) const SPEED: u32 = 38_400;
-/// Silence that ends an answer: the time of more than forty bytes.
+/// Silence that ends an answer: the transmission time of more than forty bytes.
 const QUIET: Duration = Duration::from_millis(20);
-/// Type of the answer to a command that the robot refuses.
+/// Type of the answer to a rejected command.
 const REFUSED: u8 = 8;
 
 /// An open line to a Scout.
@@ -32,10 +32,10 @@ impl Line {
         Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, reader: Reader::default() })
     }
 
-    /// Sends `command` and waits for its answer until `deadline`. Bytes received before are dropped, because a Scout
-    /// never sends bytes without a command; noise around the answer is skipped. After an answer with a wrong sum, the
-    /// command is sent once more, since each command can be repeated. After silence it is not repeated, because a late
-    /// answer would be taken for the answer to the next command.
+    /// Sends `command` and waits for its answer until `deadline`. Discards bytes received earlier, because a Scout
+    /// sends bytes only in answer to a command, and skips noise around the answer. After an answer with a wrong
+    /// checksum, the command is sent once more, since every command can be repeated. After silence it is not repeated:
+    /// a late answer would be mistaken for the answer to the next command.
     ///
     /// # Errors
     /// Fails if the line is closed, or if no complete answer arrived before the deadline.
@@ -43,7 +43,7 @@ impl Line {
         self.ask_while(command, deadline, &|| Ok(()))
     }
 
-    /// Sends `command` and waits for its answer like [`Line::ask`], while `go_on` returns no error.
+    /// Sends `command` and waits for its answer as [`Line::ask`] does; stops waiting when `go_on` returns an error.
     ///
     /// # Errors
     /// Fails if [`Line::ask`] or `go_on` fails.
@@ -57,7 +57,7 @@ impl Line {
         match self.ask_once(command, deadline, go_on) {
             Err(garbled @ Fault::Garbled(_)) if Instant::now() < deadline => {
                 match self.ask_once(command, deadline, go_on) {
-                    // It says more than the silence after it.
+                    // The malformed answer is more informative than the silence after it.
                     Err(Fault::Line(LineFault::Silent)) => Err(garbled),
                     other => other,
                 }
@@ -74,8 +74,8 @@ impl Line {
         Ok(self.line.write(&command.frame().bytes(), deadline)?)
     }
 
-    /// Sends `command` once. A complete answer that is wrong is reported as soon as the line is quiet, any other error
-    /// at the deadline.
+    /// Sends `command` once. A malformed answer of full length is reported as soon as the line is quiet; any other
+    /// error, at the deadline.
     fn ask_once(
         &mut self,
         command: &Command,
@@ -90,7 +90,7 @@ impl Line {
                 match frame.kind {
                     kind if kind == command.kind() => return Ok(frame),
                     REFUSED => return Err(Fault::Refused(command.kind())),
-                    // The right answer may come after it.
+                    // The right answer may follow.
                     other => wrong = Some(other),
                 }
             }
@@ -112,8 +112,8 @@ impl Line {
         }
     }
 
-    /// Returns the fault of a missing answer to `command`; `wrong` is the type of an answer to another command, if one
-    /// arrived.
+    /// Returns the fault for a missing answer to `command`; `wrong` is the type of an answer to another command, if
+    /// such an answer arrived.
     fn unanswered(&self, command: &Command, wrong: Option<u8>) -> Fault {
         let wrong = wrong.map(|answered| Fault::Wrong { asked: command.kind(), answered });
         let garbled = self.reader.garbled().map(Fault::Garbled);
@@ -122,7 +122,7 @@ impl Line {
 
     /// Discards the bytes that have arrived.
     fn drain(&mut self) -> Result<(), Fault> {
-        // A robot that never stops talking is found out where its answer is read.
+        // If the robot sends without end, the error is detected when the answer is read.
         let most = 64;
         for _ in 0..most {
             self.reader.clear();

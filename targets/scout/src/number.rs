@@ -1,7 +1,7 @@
-//! Whole numbers in the Scout's format: low byte first, and a sign bit with a magnitude. See
+//! Whole numbers in the Scout's format: two bytes, low byte first, in sign-magnitude form. See
 //! docs/src/reference/protocols.md, 1.2.
 
-/// Bit of a high byte that marks a negative number.
+/// Sign bit of the high byte.
 const SIGN: u8 = 0x80;
 
 /// Returns the two bytes of a number from -32767 to 32767; -32768 becomes -32767.
@@ -14,7 +14,7 @@ pub(crate) fn signed(number: i16) -> [u8; 2] {
 /// Returns the number in two bytes. Zero has two representations.
 #[must_use]
 pub(crate) fn read([low, high]: [u8; 2]) -> i16 {
-    // The sign taken away, it is below 32768.
+    // Without the sign bit, the value is below 32768.
     let magnitude = u16::from_le_bytes([low, high & !SIGN]) as i16;
     if high & SIGN == 0 { magnitude } else { -magnitude }
 }

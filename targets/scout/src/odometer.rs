@@ -1,4 +1,4 @@
-//! Computes the odometry of a Scout, whose position numbers wrap at 83 m. See docs/src/reference/protocols.md, 1.8.
+//! Computes the odometry of a Scout, whose positions wrap at 83 m. See docs/src/reference/protocols.md, 1.8.
 
 use mdle_runtime::{Meters, Nanos, Pose, Radians};
 
@@ -6,15 +6,15 @@ use crate::fault::Fault;
 use crate::state::State;
 use crate::wheels::UNIT;
 
-/// Number of different values in sign and magnitude, from -32767 to 32767.
+/// Number of different values in sign-magnitude form, from -32767 to 32767.
 const NUMBERS: i32 = 65_535;
 
-/// Maximum plausible distance between two states, beyond the distance that the robot can drive in the time between
-/// them, in metres; a larger distance is a leap.
+/// Distance between two states, in metres, by which a step may exceed what the robot can drive in the time between
+/// them; a larger distance is a leap.
 const LEAP: f64 = 1.0;
 /// Maximum ratio of a wheel's speed to its commanded speed.
 const FASTER: f64 = 2.0;
-/// Maximum number of leaps in excess of normal steps; with more leaps, the positions are meaningless.
+/// Maximum number by which leaps may exceed normal steps; beyond it, the positions are unusable.
 const LEAPS: u8 = 4;
 
 /// Odometry that follows the wrapping positions from state to state.
@@ -28,9 +28,9 @@ pub(crate) struct Odometer {
 }
 
 impl Odometer {
-    /// Returns the pose of the robot in the state that arrived at `at`, while no wheel is commanded to move faster than
-    /// `fastest` m/s. A leap does not change the pose. Between two states the robot has to move less than half of the
-    /// range that wraps.
+    /// Returns the robot's pose in the state that arrived at `at`; no wheel is commanded to move faster than `fastest`
+    /// m/s. A leap does not change the pose. Between two states, the robot has to move less than half of the range at
+    /// which positions wrap.
     ///
     /// # Errors
     /// Fails if the positions leap repeatedly.
@@ -52,7 +52,7 @@ impl Odometer {
     }
 }
 
-/// Returns the difference between two consecutive numbers, the second of which may have wrapped.
+/// Returns the difference between two consecutive positions; the second may have wrapped.
 fn unwrapped(from: i16, to: i16) -> i64 {
     let way = i32::from(to) - i32::from(from);
     let half = NUMBERS / 2;
@@ -85,13 +85,13 @@ mod tests {
         let mut odometer = Odometer::default();
         let mut at = 0;
         let mut units = |x: i16, y: i16| {
-            // A robot that is fast enough for all of it.
+            // A maximum speed at which none of these distances is a leap.
             at += 1_000_000_000;
             units(odometer.pose(&state(x, y), Nanos(at), 1000.0).unwrap())
         };
         assert_eq!(units(20_000, -20_000), [20_000, -20_000]);
         assert_eq!(units(32_767, -32_767), [32_767, -32_767]);
-        // One unit on, and 83 m back by the number of the line.
+        // One unit further, although the transmitted position falls by 83 m.
         assert_eq!(units(-32_767, 32_767), [32_768, -32_768]);
         assert_eq!(units(0, 0), [65_535, -65_535]);
         assert_eq!(units(-20_000, 20_000), [45_535, -45_535]);
@@ -105,9 +105,9 @@ mod tests {
             at += 100_000_000;
             odometer.pose(&state(x, 0), Nanos(at), 1.0).map(|pose| units(pose)[0])
         };
-        // One number is another one's: what follows counts from where it ended.
+        // One wrong position causes two leaps, and neither changes the pose; later positions count from the last one.
         assert_eq!([100, 9000, 110, 120].map(&mut after), [Ok(100), Ok(100), Ok(100), Ok(110)]);
-        // Half a metre in a tenth of a second is a state that came late.
+        // Half a metre in 0.1 s is possible if a state was late.
         assert_eq!(after(320), Ok(310));
         let leaps = [1000, 2000, 3000, 4000, 5000, 6000].map(after);
         assert_eq!(leaps.iter().position(|pose| *pose == Err(Fault::Leaps)), Some(4));

@@ -1,24 +1,24 @@
-//! Finds answers in the bytes of the line: bytes that cannot begin a frame are skipped one by one.
+//! Finds answers in received bytes: bytes that cannot begin a frame are skipped one by one.
 
 use crate::frame::{Frame, Garbled, START};
 
 /// Maximum number of bytes that are read from the line at once.
 pub(crate) const CHUNK: usize = 512;
 
-/// Bytes received since a command was sent, with the frames in them.
+/// Bytes received since the last command, from which frames are read.
 #[derive(Debug)]
 pub struct Reader {
-    /// Bytes that have not been read as a frame; empty, or beginning with the first byte of a frame.
+    /// Bytes that have not been read as a frame: empty, or beginning with the start byte of a frame.
     waiting: Vec<u8>,
-    /// First defect in the bytes since the reader was cleared; `None` if there is none.
+    /// First error in the bytes since the last call of `clear`; `None` if there is no error.
     garbled: Option<Garbled>,
-    /// `true` after a defective frame of the right length.
+    /// `true` after a malformed frame of the right length.
     was_whole: bool,
 }
 
 impl Default for Reader {
     fn default() -> Self {
-        // What may become a frame and what comes at once: a turn allocates nothing.
+        // Capacity for an incomplete frame and one read, so that turns do not allocate.
         Self { waiting: Vec::with_capacity(2 * CHUNK), garbled: None, was_whole: false }
     }
 }
@@ -41,8 +41,8 @@ impl Reader {
         self.waiting.len()
     }
 
-    /// Removes and returns the next frame with a right sum; `None` if there is no complete one. Bytes before it that
-    /// cannot begin a frame are dropped.
+    /// Removes and returns the next frame with a correct checksum; `None` if no frame is complete. Bytes before the
+    /// frame are discarded if they cannot begin a frame.
     pub fn next_frame(&mut self) -> Option<Frame> {
         loop {
             match Frame::read(&self.waiting) {
@@ -63,7 +63,7 @@ impl Reader {
 
     /// Removes and returns a frame of type `kind` that follows the incomplete beginning of another frame, which may be
     /// noise; `None` if there is no such frame. Call it only when no more bytes arrive: otherwise a part of a valid
-    /// frame could be taken for a frame.
+    /// frame could be mistaken for a frame.
     pub fn after_false_start(&mut self, kind: u8) -> Option<Frame> {
         let found = (1..self.waiting.len()).find_map(|place| {
             let frame = Frame::read(self.waiting.get(place..)?).ok().flatten();
@@ -74,13 +74,13 @@ impl Reader {
         Some(frame)
     }
 
-    /// Returns the first defect of the received bytes; `None` if there is none.
+    /// Returns the first error in the received bytes; `None` if there is no error.
     #[must_use]
     pub fn garbled(&self) -> Option<Garbled> {
         self.garbled
     }
 
-    /// Returns `true` if a complete frame was wrong: the robot has answered, and the command can be repeated.
+    /// Returns `true` if a complete frame was malformed: the robot has answered, and the command can be repeated.
     #[must_use]
     pub fn was_whole(&self) -> bool {
         self.was_whole

@@ -1,20 +1,19 @@
-//! Converts the bytes of the sixteen sonars to pings, and determines which pings are new and how old the others are.
+//! Converts the ranges of the sixteen sonars to pings, and determines which pings are new and how old the others are.
 //! See docs/src/reference/protocols.md, 1.6.
 
 use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, SONARS};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
-/// Number of gaps by which a round of pings may be late. It is better to miss a ping than to report a ping that did not
-/// happen.
+/// Tolerance for a late round of pings, in gaps. A missed ping is better than a reported ping that did not happen.
 const SLACK: usize = 2;
 /// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
 
 /// Pings of the ring of sonars.
 ///
-/// The robot does not report when a sonar pinged. A sonar whose range has changed has pinged since the last state. A
-/// sonar whose range stays the same counts as having pinged again once per round of the ring, plus a tolerance.
+/// The robot does not report when a sonar pinged. If the range of a sonar has changed, the sonar has pinged since the
+/// last state. If the range stays the same, the sonar is assumed to ping once per round of the ring plus a tolerance.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     pings: [Pings; SONARS],
@@ -23,14 +22,14 @@ pub(crate) struct Ring {
     active: [bool; SONARS],
     /// Duration of one round of the ring.
     around: Nanos,
-    /// Time after which an unchanged range is a new ping.
+    /// Time after which an unchanged range counts as a new ping.
     again: Nanos,
-    /// Time between two pings.
+    /// Interval between two pings.
     gap: Nanos,
 }
 
 impl Ring {
-    /// Returns a ring of the sonars in `order`, which ping one after the other with `gap` between two pings.
+    /// Returns a ring of the sonars in `order`, which ping one after another at the interval `gap`.
     pub(crate) fn new(order: &[u8], gap: Nanos) -> Self {
         let (pings, last, active) = ([Pings::default(); SONARS], [None; SONARS], [false; SONARS]);
         let mut ring = Self { pings, last, active, around: Nanos::ZERO, again: Nanos::ZERO, gap };
@@ -38,20 +37,19 @@ impl Ring {
         ring
     }
 
-    /// Sets the sonars that ping from now on, one after the other. Earlier pings are kept.
+    /// Sets the sonars that ping from now on, one after another. Earlier pings are kept.
     pub(crate) fn reorder(&mut self, order: &[u8]) {
         self.active = std::array::from_fn(|sonar| order.iter().any(|number| usize::from(*number) == sonar));
         let times = |count: usize| Nanos(self.gap.0.saturating_mul(count as u64));
         (self.around, self.again) = (times(order.len()), times(order.len() + SLACK));
     }
 
-    /// Returns the time in which each sonar pings once.
+    /// Returns the duration of one round, in which each sonar pings once.
     pub(crate) fn around(&self) -> Nanos {
         self.around
     }
 
-    /// Stores the ranges of the sonars at the time `at`, when odometry reports `pose`, and returns the pings of each
-    /// sonar.
+    /// Stores the sonar ranges received at `at`; `pose` is the pose by odometry. Returns the pings of each sonar.
     pub(crate) fn take_in(&mut self, sonars: &[u8; SONARS], at: Nanos, pose: Pose) -> [Pings; SONARS] {
         let all = self.pings.iter_mut().zip(&mut self.last).zip(sonars).zip(&self.active);
         for (((pings, last), heard), _) in all.filter(|(_, active)| **active) {

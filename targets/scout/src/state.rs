@@ -1,5 +1,5 @@
-//! State of a Scout, which answers almost any command: 42 bytes in a fixed order. See docs/src/reference/protocols.md,
-//! 1.4.
+//! State of a Scout, with which it answers almost every command: 42 bytes in a fixed order. See
+//! docs/src/reference/protocols.md, 1.4.
 
 use mdle_runtime::Volts;
 
@@ -8,12 +8,12 @@ use crate::number;
 /// Length of the state, in bytes.
 pub(crate) const LENGTH: usize = 42;
 
-/// Upper end of the scale of the processor's supply voltage, in volts.
+/// Full scale of the processor's supply voltage, in volts.
 const CPU_RANGE: f64 = 12.0;
-/// Upper end of the scale of the motors' supply voltage, in volts.
+/// Full scale of the motors' supply voltage, in volts.
 const MOTOR_RANGE: f64 = 12.85;
 
-/// The state of a Scout, in the units of the line.
+/// State of a Scout, in the units of the protocol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct State {
     /// Last range of each sonar, in inches; 255 if the sonar heard nothing.
@@ -30,7 +30,7 @@ pub struct State {
     pub right: i16,
     /// Speed of the left wheel, in tenths of an inch per second.
     pub left: i16,
-    /// Bits for motors, battery, charger and emergency stop.
+    /// Status bits for motors, battery, charger and emergency stop.
     pub status: u8,
     /// Time of the controller's clock, in milliseconds.
     pub clock: u32,
@@ -90,7 +90,7 @@ impl State {
         })
     }
 
-    /// Returns `true` if the emergency stop is pressed: no command moves the robot then.
+    /// Returns `true` if the emergency stop is pressed: then no command moves the robot.
     #[must_use]
     pub const fn is_stopped(&self) -> bool {
         self.status & 0b0100_0000 != 0
@@ -102,7 +102,7 @@ impl State {
         self.status & 0b0011_0000 != 0
     }
 
-    /// Returns the supply voltages of the robot's computer and motors; each stays within the scale of its measurement.
+    /// Returns the supply voltages of the robot's computer and motors; each is limited to the scale of its measurement.
     #[must_use]
     pub fn volts(&self) -> [Volts; 2] {
         let volts = |raw: u8, range: f64| Volts((2.0 + f64::from(raw) * (3.0 / 255.0)) * (range / 5.0));

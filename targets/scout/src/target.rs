@@ -80,7 +80,7 @@ mod tests {
             sentence,
             "a --period of 0.015 s is too short for this robot's line, on which each turn takes 15.6ms: choose 0.016 s or longer"
         );
-        // There is no such device.
+        // The device does not exist.
         for (micros, more) in [(15_000 + 1_000, &[][..]), (15_000, &["--lockstep"])] {
             assert!(matches!(connected(micros, more), Err(Refusal::Fault(_))), "{micros} {more:?}");
         }

@@ -1,21 +1,21 @@
-//! Converts speeds of the robot to speeds of its wheels and back, in the units of the line. See
+//! Converts between the speeds of the robot and of its wheels, in the units of the protocol. See
 //! docs/src/reference/protocols.md, 1.5.
 
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 
 /// Metres in a tenth of an inch.
 pub(crate) const UNIT: f64 = 0.00254;
-/// Distance that a wheel moves for each degree of a turn on the spot, in inches; or for each tenth of a degree, in
-/// tenths of an inch.
+/// Distance that a wheel moves for each degree of a turn on the spot, in inches; equally, for each tenth of a degree,
+/// in tenths of an inch.
 const ROTATION: f64 = 0.118597;
-/// Distance between the wheels, in metres, which follows from [`ROTATION`].
+/// Distance between the wheels, in metres, derived from [`ROTATION`].
 pub(crate) const WHEEL_BASE: f64 = 0.34519;
 
-/// Returns the speeds of the right and the left wheel for `input`, at most `fastest` (m/s): both speeds are reduced by
-/// the same factor, so that the robot stays on its curve. An input that is not finite stops the robot.
+/// Returns the speeds of the right and the left wheel for `input`, limited to `fastest` (m/s): both speeds are reduced
+/// by the same factor, so that the robot stays on its curve. An input that is not finite stops the robot.
 pub(crate) fn speeds(input: &Twist, fastest: f64) -> (i16, i16) {
     let along = libm::trunc(input.v.0 / UNIT);
-    // Tenths of a degree a second.
+    // Turn rate in tenths of a degree per second.
     let turn = libm::trunc(libm::trunc(input.omega.0 * (1800.0 / std::f64::consts::PI)) * ROTATION);
     let (right, left) = (along + turn, along - turn);
     if !(right.is_finite() && left.is_finite()) {
@@ -27,7 +27,7 @@ pub(crate) fn speeds(input: &Twist, fastest: f64) -> (i16, i16) {
     (whole(right), whole(left))
 }
 
-/// Returns the speed of a robot whose wheels have these speeds.
+/// Returns the motion of a robot whose wheels have these speeds.
 pub(crate) fn twist(right: i16, left: i16) -> Twist {
     let (right, left) = (f64::from(right) * UNIT, f64::from(left) * UNIT);
     Twist { v: MetersPerSecond((right + left) / 2.0), omega: RadiansPerSecond((right - left) / WHEEL_BASE) }

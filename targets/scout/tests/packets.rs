@@ -1,11 +1,11 @@
-//! Compares the driver's language with all known example packets, in both directions: the bytes of commands, and the
-//! content of answers.
+//! Compares the driver's implementation of the protocol with all known example packets, in both directions: the bytes
+//! of commands, and the contents of answers.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test fails by panicking")]
 
 use mdle_runtime::Volts;
 use mdle_scout::{Command, Frame, Garbled, State};
 
-/// The order in which a Scout's sonars ping.
+/// Order in which a Scout's sonars ping.
 const ORDER: [u8; 16] = [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8];
 
 fn bytes(hex: &str) -> Vec<u8> {
@@ -98,7 +98,7 @@ fn emergency_stop_and_charger_are_bits_of_the_status() {
 #[test]
 fn what_is_no_frame_is_refused_as_soon_as_it_can_be() {
     let reply = bytes(GS_REPLY);
-    // The whole of it is needed, and what comes behind it is left for later.
+    // A frame is read only when it is complete, and bytes after it are left for later.
     for count in 0..reply.len() {
         assert_eq!(Frame::read(&reply[..count]), Ok(None), "{count}");
     }

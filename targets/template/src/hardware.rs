@@ -1,5 +1,5 @@
-//! The hardware: REPLACE everything in this file to drive your own robot. Until then the robot exists only in this
-//! program.
+//! The robot's hardware: REPLACE everything in this file to drive your own robot. Until then the robot is only
+//! simulated.
 
 use std::fmt;
 use std::time::Duration;
@@ -14,8 +14,8 @@ use mdle_runtime::{
 
 use crate::{Input, Output, alphabet};
 
-/// REPLACE by the measures of your robot. `body_radius` is the radius of the smallest circle around it, which is also
-/// half the length and half the width of a round one.
+/// REPLACE with the dimensions of your robot. `body_radius` is the radius of the smallest circle around it. For a round
+/// body, `half_length` and `half_width` have the same value.
 const SHAPE: Shape = Shape {
     body_radius: Meters(0.2),
     half_length: Meters(0.2),
@@ -26,16 +26,16 @@ const SHAPE: Shape = Shape {
     confirmation: 3,
     steering: Steering::USUAL,
 };
-/// REPLACE by the speed that no law may exceed.
+/// REPLACE with the maximum speed that laws may request.
 const FASTEST: MetersPerSecond = MetersPerSecond(0.5);
-/// REPLACE by the turn rate that no law may exceed.
+/// REPLACE with the maximum turn rate that laws may request.
 const FASTEST_TURN: RadiansPerSecond = RadiansPerSecond(2.0);
 
-/// Reason why the robot cannot go on. Add what can go wrong with yours: a line that is closed, no answer, an emergency
+/// Reason why the robot cannot continue. Add the faults of your robot: a closed line, a missing answer, an emergency
 /// stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// A law has asked for a speed that is not a number.
+    /// A law has requested a speed that is not a number.
     NoNumber,
 }
 
@@ -47,8 +47,8 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Returns the command for this input: if it is too fast, both speeds are reduced by the same factor, so that the robot
-/// stays on its curve.
+/// Returns the command for this input. If the input is too fast, both speeds are reduced by the same factor, so that
+/// the robot stays on its curve.
 fn within_limits(input: &Input) -> Result<Input, Fault> {
     if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
         return Err(Fault::NoNumber);
@@ -57,7 +57,7 @@ fn within_limits(input: &Input) -> Result<Input, Fault> {
     Ok(Input { v: MetersPerSecond(input.v.0 * scale), omega: RadiansPerSecond(input.omega.0 * scale) })
 }
 
-/// The robot. REPLACE its fields by the line to yours, and the functions below by your driver.
+/// The robot. REPLACE the fields with the connection to your robot, and the functions below with your driver.
 #[derive(Debug)]
 pub struct Hardware {
     period: Duration,
@@ -65,7 +65,7 @@ pub struct Hardware {
     velocity: Input,
 }
 
-/// The target that the host runs plans on.
+/// The target on which the host runs plans.
 #[derive(Debug, Clone, Copy)]
 pub struct Target;
 
@@ -74,20 +74,20 @@ impl mdle_host::Target for Target {
     const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
     type Robot = Hardware;
 
-    /// REPLACE by the options that your robot needs, such as the line that it is on.
+    /// REPLACE with the options that your robot needs, such as the device of its serial line.
     fn arguments(command: Command) -> Command {
         let speed = Arg::new("speed").long("speed").value_name("real|max").value_parser(["real", "max"]);
         command.arg(speed.help("Speed of the simulated time: as fast as the clock, or as possible [default: real]"))
     }
 
-    /// REPLACE: remove this function, and time passes by the clock. Only simulated time can run faster.
+    /// REPLACE: remove this function, and time follows the clock. Only simulated time can run faster.
     fn time(options: &ArgMatches) -> Result<Time, String> {
         let is_hurried = options.get_one::<String>("speed").is_some_and(|speed| speed == "max");
         Ok(Time::Stepped(if is_hurried { Pace::Max } else { Pace::Times(1.0) }))
     }
 
-    /// Opens the robot; it does not move yet. Yours sets its odometry to zero here and arms its watchdog, which has to
-    /// stop the robot when no command comes any more: even this program can be killed.
+    /// Connects to the robot, which does not move yet. Your function sets the odometry to zero here and arms the
+    /// robot's watchdog, which has to stop the robot if no more commands arrive: even this program can be killed.
     fn connect(_options: &ArgMatches, period: Duration, _request: &StopRequest) -> Result<Hardware, Refusal> {
         Ok(Hardware { period, pose: Pose::ORIGIN, velocity: Input::default() })
     }
@@ -98,8 +98,8 @@ impl Robot for Hardware {
     type Input = Input;
     type Error = Fault;
 
-    /// Sends the speeds for this period and returns the sensors' values after it. Yours waits for them, but not for
-    /// ever: a robot that is silent is a fault, and earlier values are never returned twice.
+    /// Sends the speeds for this period and returns the sensor values at its end. Your function waits for these values,
+    /// but with a timeout: a robot that does not answer is a fault, and old values must never be returned again.
     fn exchange(&mut self, input: &Input) -> Result<Output, Fault> {
         let speeds = within_limits(input)?;
         let seconds = self.period.as_secs_f64();
@@ -108,7 +108,8 @@ impl Robot for Hardware {
         Ok(Sensed {
             odometry: self.pose,
             velocity: self.velocity,
-            // What the alphabet does not declare, no plan can ask for: this stays empty until the robot has it.
+            // The alphabet declares no quarks for these sensors, so no plan can use them. They stay empty until the
+            // robot has them.
             switches: 0,
             pings: [Pings::default(); SONARS],
             compass: Compass::default(),
@@ -121,8 +122,8 @@ impl Robot for Hardware {
         })
     }
 
-    /// Stops the robot. Every run ends with this call, also after a fault. Yours sends the robot's own stop command,
-    /// even if the last command was not answered.
+    /// Stops the robot. Every run ends with this call, also after a fault. Your function sends the robot's own stop
+    /// command, even if the last command was not answered.
     fn stop(&mut self) -> Result<(), Fault> {
         self.velocity = Input::default();
         Ok(())
@@ -130,8 +131,8 @@ impl Robot for Hardware {
 }
 
 impl Hardware {
-    /// Pose of the simulated robot, relative to its start. REPLACE: remove this function, since the true pose of a real
-    /// robot is not known here; `tests/conformance.rs` has to measure it.
+    /// Returns the pose of the simulated robot, relative to its start. REPLACE: remove this function, since the true
+    /// pose of a real robot is not known here; `tests/conformance.rs` has to measure it.
     #[must_use]
     pub fn imagined(&self) -> Pose {
         self.pose
@@ -154,7 +155,7 @@ mod tests {
         Input { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }
     }
 
-    /// Returns the sensors' values after a second with these speeds.
+    /// Returns the sensor values after a second at these speeds.
     fn after_a_second(v: f64, omega: f64) -> Result<Output, Fault> {
         let mut hardware = hardware();
         (0..9).try_for_each(|_| hardware.exchange(&twist(v, omega)).map(|_| ()))?;

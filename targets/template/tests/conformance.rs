@@ -1,4 +1,4 @@
-//! The robot does what any robot must do that can do what its alphabet claims. Run it with `cargo test`.
+//! Checks that the robot does what the capabilities in its alphabet require of any robot. Run it with `cargo test`.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::f64::consts::FRAC_PI_2;
@@ -10,7 +10,7 @@ use mdle_host::{StopRequest, Target as _};
 use mdle_runtime::{Nanos, Pose, Radians, Robot as _};
 use template_target::{Hardware, Input, Target, alphabet};
 
-/// Stage of the conformance suite.
+/// Stage of the conformance suite: places the robot and observes it.
 struct Floor {
     began: Pose,
 }
@@ -20,8 +20,8 @@ impl Stage for Floor {
     type Alphabet = alphabet::Alphabet;
     const PERIOD: Nanos = alphabet::PERIOD;
 
-    /// REPLACE: starts the robot anew, and makes sure that the walls of `room` are where it says, and that the robot is
-    /// `at` a place among them. An imagined robot without walls is wherever it is placed.
+    /// REPLACE: restart the robot, make sure that the walls are where `room` places them, and put the robot at the pose
+    /// `at` among them. A simulated robot without walls is wherever it is placed.
     fn robot(&mut self, _room: &Room, at: Pose) -> Result<Hardware, String> {
         self.began = at;
         let options = Target::arguments(Command::new("conformance")).get_matches_from(["conformance"]);
@@ -29,7 +29,7 @@ impl Stage for Floor {
             .map_err(|refusal| format!("{refusal:?}"))
     }
 
-    /// REPLACE: where the robot truly is, by the test bench, the simulator or the camera that sees it.
+    /// REPLACE: return the robot's true pose, as measured by a test bench, a simulator or a camera.
     fn truth(&self, robot: &Hardware) -> Pose {
         let (imagined, began) = (robot.imagined(), self.began);
         let left = Radians(began.theta.0 + FRAC_PI_2);
@@ -37,7 +37,7 @@ impl Stage for Floor {
         Pose { theta: Radians(began.theta.0 + imagined.theta.0), ..place }
     }
 
-    /// REPLACE: waits. An imagined robot moves only with commands.
+    /// REPLACE: wait for this number of periods. A simulated robot moves only with commands.
     fn left_alone(&mut self, robot: &mut Hardware, periods: u32) {
         for _ in 0..periods {
             let _ = robot.exchange(&Input::default()).unwrap();
@@ -48,7 +48,7 @@ impl Stage for Floor {
 #[test]
 fn the_robot_conforms() {
     let mut floor = Floor { began: Pose::ORIGIN };
-    // A method for each capability of the alphabet; there are `.bumper()`, `.sonar()` and `.paths()` too.
+    // Call a method for each capability of the alphabet; there are also `.bumper()`, `.sonar()` and `.paths()`.
     let report = Suite::on(&mut floor).diff_drive().odometry().report();
     assert!(report.holds(), "{report}");
 }

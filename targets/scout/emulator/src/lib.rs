@@ -1,4 +1,4 @@
-//! Robot emulator of a Super Scout: its language on a pseudo-terminal, its body in a simulated world.
+//! Robot emulator of a Super Scout: the protocol on a pseudo-terminal, and the body in a simulated world.
 #![forbid(unsafe_code)]
 
 pub mod scout;

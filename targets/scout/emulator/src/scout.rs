@@ -1,4 +1,4 @@
-//! A Super Scout in a simulated world: the effect of each request, and the state with which the robot answers.
+//! A Super Scout in a simulated world: executes requests, and answers with its state.
 
 use std::time::Duration;
 
@@ -15,11 +15,11 @@ const INCH: f64 = 0.0254;
 const INCHES_A_DEGREE: f64 = 0.118_597;
 /// Deceleration of a robot whose motors are limp, in tenths of an inch per second squared: 0.3 m/s².
 const ROLLING: f64 = 120.0;
-/// Raw measurements of both supply voltages at 10.5 V, as a report contains them.
+/// Raw values that a report contains for both supply voltages at 10.5 V.
 const LOW: [u8; 2] = [202, 177];
 /// Distance between consecutive reported positions of a robot with the fault `leap`, in tenths of an inch: 3 m.
 const LEAP: i64 = 1181;
-/// Type of the answer to a command that a Scout does not know.
+/// Type of the answer to an unknown command.
 const REFUSED: u8 = 8;
 
 /// An emulated Scout.
@@ -28,19 +28,19 @@ pub struct Scout {
     body: Simulated,
     sensed: Output,
     incoming: Incoming,
-    /// Last request that has not been answered, with `true` if the robot knows the command.
+    /// Last unanswered request, with `true` if the robot knows the command.
     asked: Option<(Request, bool)>,
     /// Commanded speeds of the wheels, in tenths of an inch per second.
     wheels: (i32, i32),
-    /// `true` while the motors have no current: the robot then rolls on.
+    /// `true` while the motors have no current: the robot then rolls until friction stops it.
     limp: bool,
     /// Pose at which the reported position and heading are zero.
     zero: Pose,
     /// Sonars that ping: bit `i` for sonar `i`.
     active: u16,
-    /// Last range of each sonar, as in a report.
+    /// Last range of each sonar, as reported.
     heard: [u8; 16],
-    /// Time without a request after which the robot stops; `None` for never.
+    /// Time without a request after which the robot stops itself; `None` if the watchdog is off.
     watchdog: Option<Duration>,
     silence: Duration,
     /// Time since the robot was switched on.
@@ -55,10 +55,10 @@ pub struct Scout {
     is_low: bool,
     is_plugged: bool,
     is_mute: bool,
-    /// State that the robot repeats; `None` if it does not hang.
+    /// State that a hung robot repeats; `None` if the robot does not hang.
     hung: Option<Vec<u8>>,
     is_cut_off: bool,
-    /// Wheel speeds that the robot keeps because it ignores all commands; `None` if it obeys.
+    /// Wheel speeds that the robot keeps while it ignores all commands; `None` if it obeys.
     runaway: Option<(i32, i32)>,
     /// Offset of the reported positions, in tenths of an inch.
     off: i64,
@@ -71,7 +71,7 @@ impl Scout {
     /// Returns a robot that has just been switched on.
     ///
     /// # Errors
-    /// Returns the world's error about an input that it cannot accept, which does not occur here.
+    /// Fails if the simulated world rejects the input, which does not occur here.
     pub fn new(mut body: Simulated) -> Result<Self, String> {
         let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
         let zero = sensed.pose();
@@ -106,7 +106,7 @@ impl Scout {
         Ok(scout)
     }
 
-    /// Returns the true pose of the robot.
+    /// Returns the robot's true pose in the world.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose()
@@ -124,7 +124,7 @@ impl Scout {
         self.rolling() == (0, 0)
     }
 
-    /// Records a request that is a motion command.
+    /// Records `request` as an order if it is a motion command.
     fn note(&mut self, request: &Request) {
         let order = match (request.command, &*request.data) {
             (5, [r0, r1, l0, l1, ..]) if (number(*r0, *r1), number(*l0, *l1)) != (0, 0) => Order::Drive,
@@ -135,7 +135,7 @@ impl Scout {
         self.orders.push(self.age, order);
     }
 
-    /// Stores the last echoes of the sonars that have pinged.
+    /// Stores the latest echoes of the sonars that have pinged.
     fn listen(&mut self) {
         if self.is_mute {
             return;
@@ -183,7 +183,7 @@ impl Scout {
         (tenths(velocity.v.0 + spin), tenths(velocity.v.0 - spin))
     }
 
-    /// Returns the state that an answer contains.
+    /// Returns the bytes of the state, as an answer contains them.
     fn state(&self) -> Vec<u8> {
         let pose = self.sensed.pose();
         let (x, y) = (pose.x.0 - self.zero.x.0, pose.y.0 - self.zero.y.0);
@@ -214,8 +214,8 @@ impl Scout {
     }
 }
 
-/// Converts a battery voltage to the bytes of both supplies in a report: 0 at two fifths of a supply's scale, 255 at
-/// the end of the scale.
+/// Converts a battery voltage to the bytes of both supplies in a report: 0 at two fifths of a supply's full scale, 255
+/// at full scale.
 fn volts(battery: Volts) -> [u8; 2] {
     [12.0, 12.85].map(|range| ((battery.0 * 5.0 / range - 2.0) * (255.0 / 3.0)).round().clamp(0.0, 255.0) as u8)
 }
@@ -258,7 +258,7 @@ impl Emulated for Scout {
         }
         let (right, left) = if self.emergency { (0, 0) } else { self.runaway.unwrap_or(self.wheels) };
         let right = if self.is_stuck { 0 } else { right };
-        // The body counts in tenths of an inch as well, and cuts off: a hair more leaves it these very numbers.
+        // The body truncates speeds to tenths of an inch: a hundredth of a unit more preserves the commanded values.
         let inches = |wheel: i32| (f64::from(wheel) + 0.01 * f64::from(wheel.signum())) / 10.0;
         let (right, left) = (inches(right), inches(left));
         let degrees = (right - left) / 2.0 / INCHES_A_DEGREE;
@@ -283,7 +283,7 @@ impl Emulated for Scout {
 
     fn can_suffer(ailment: Ailment) -> bool {
         match ailment {
-            // Each of its bytes means something, and all that it tells comes in one frame.
+            // Every byte on the Scout's line has a meaning, and all data are in one frame.
             Ailment::Filler | Ailment::NoBumpers | Ailment::NoTranslation | Ailment::NoRotation | Ailment::NoStatus => {
                 false
             }

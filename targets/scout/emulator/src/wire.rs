@@ -1,7 +1,6 @@
-//! The Scout's language as the robot uses it: reads requests from bytes, and writes answers to bytes.
+//! The Scout's protocol on the robot's side: reads requests from bytes, and writes answers to bytes.
 //!
-//! The code is independent of the driver's code for this language, so that an error in one of the two shows up in
-//! tests.
+//! The code is independent of the driver's implementation of this protocol, so that tests reveal an error in either.
 
 /// A request: a command with its arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -28,12 +27,12 @@ impl Incoming {
         self.0.len()
     }
 
-    /// Returns the next complete request; `None` if there is no complete request. Bytes that cannot begin a request are
-    /// skipped one by one, as a robot that waits for a start byte skips them.
+    /// Returns the next complete request; `None` if no request is complete. Bytes that cannot begin a request are
+    /// skipped one by one, as by a robot that waits for a start byte.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.0.iter().position(|byte| *byte == 1) else {
-                // Nothing of it can become one.
+                // No byte in the buffer can begin a request.
                 self.0.clear();
                 return None;
             };
@@ -74,15 +73,15 @@ pub fn answer(kind: u8, body: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Returns the number in two bytes, with 15 bits of magnitude and one sign bit.
+/// Returns the number in two bytes: 15 bits of magnitude and a sign bit.
 #[must_use]
 pub fn number(low: u8, high: u8) -> i32 {
     let size = i32::from(high % 128) * 256 + i32::from(low);
     if high >= 128 { -size } else { size }
 }
 
-/// Returns the two bytes of a number in sign and magnitude. The number wraps modulo 65,535, the number of different
-/// values in this form.
+/// Returns a number as two bytes in sign-magnitude form. The number wraps modulo 65,535, the number of different values
+/// in this form.
 #[must_use]
 pub fn two_bytes(number: i64) -> [u8; 2] {
     let number = (number + 32_767).rem_euclid(65_535) - 32_767;

@@ -1,5 +1,5 @@
-//! Property tests of the Scout's language: no bytes stop the reader of the driver or of the emulator, and each reader
-//! reads what the other side writes.
+//! Property tests of the Scout's protocol: no input makes the reader of the driver or of the emulator fail, and each
+//! reader understands what the other side writes.
 #![allow(clippy::panic, clippy::indexing_slicing, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the seed is seen where a test fails")]
 
@@ -9,7 +9,7 @@ use proptest::collection::vec;
 use proptest::prelude::{Just, ProptestConfig, any, prop_oneof, proptest};
 use proptest::test_runner::RngSeed;
 
-/// Configuration of each test; prints the random seed, which is shown when the test fails.
+/// Configuration of each test; prints the random seed, which is shown if the test fails.
 fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let rng_seed = match default.rng_seed {
@@ -32,7 +32,7 @@ proptest! {
         let mut incoming = Incoming::default();
         incoming.push(&bytes);
         while let Some(Request { command, data }) = incoming.next_request() {
-            // The driver would say it so, and it is in there.
+            // The driver would write the request in the same way, and the input contains these bytes.
             let frame = Frame { kind: command, arguments: data.into_iter().collect() }.bytes();
             assert!(bytes.windows(frame.len()).any(|some| some == frame.as_slice()));
         }
@@ -68,11 +68,11 @@ proptest! {
             reader.push(piece);
             found.extend(std::iter::from_fn(|| reader.next_frame()));
         }
-        // The line is quiet.
+        // No more bytes arrive.
         found.extend(reader.after_false_start(kind));
         let meant = Frame { kind, arguments: body.iter().copied().collect() };
         assert!(found.contains(&meant), "{noise:02X?}");
-        // Whatever else is taken for a frame has a right sum.
+        // All other frames found have a correct checksum.
         for frame in found {
             let bytes = frame.bytes();
             assert!(sent.windows(bytes.len()).any(|some| some == bytes.as_slice()));
@@ -87,7 +87,7 @@ proptest! {
         reader.push(&bytes);
         let found = std::iter::from_fn(|| reader.next_frame()).collect::<Vec<_>>();
         let late = reader.after_false_start(5);
-        // A part of what it says may be a frame, but no state.
+        // A part of the answer may be a frame, but not a state.
         assert!(found.iter().chain(&late).all(|frame| State::read(&frame.arguments).is_none()));
     }
 }

@@ -1,4 +1,4 @@
-//! Tests in real time: a robot that answers late, and a driver that comes back too late.
+//! Tests in real time: a robot that answers late, and a driver that pauses for too long.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::thread;
@@ -22,7 +22,7 @@ fn with_robot<T>(faults: &[&str], drive: impl FnOnce(&mut Scout) -> T) -> (T, Fa
     let faults: Vec<_> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
     let robot = Faulty::new(Emulated::new(body).unwrap(), &faults).unwrap();
     let Driven { result, served, robot } = driven(robot, Pace::Real, |device| {
-        // Longer than any machine takes.
+        // Longer than any machine needs.
         let config = Config { answer: 20_000, gap: 8, ..Configured::read(None, device.to_str()).unwrap().config };
         drive(&mut Scout::connect(config, Clock::Wall, PERIOD, &StopRequest::default()).unwrap())
     })
@@ -46,7 +46,7 @@ fn a_robot_that_answers_late_is_stopped_in_good_order() {
 fn a_command_after_the_robot_has_stopped_itself_is_not_sent() {
     let (results, robot) = with_robot(&[], |driver| {
         driver.exchange(&AHEAD).unwrap();
-        // Its watchdog waits for a second.
+        // The robot's watchdog waits for a second.
         thread::sleep(Duration::from_millis(1100));
         [driver.exchange(&AHEAD).map(drop), driver.stop()]
     });

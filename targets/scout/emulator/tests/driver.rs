@@ -1,5 +1,5 @@
-//! Tests of the driver with the emulated robot on a real pseudo-terminal: signs, units and directions, and the messages
-//! about faults on either side.
+//! Tests the driver with the emulated robot on a real pseudo-terminal: signs, units, directions, and the messages about
+//! faults on either side.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -16,19 +16,19 @@ use mdle_scout_emulator::wire::{Incoming, Request, answer};
 use mdle_simulator::{Body, Make, Simulated, World};
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// Walls 2 m ahead of the robot, 1.5 m to its left, 1 m to its right and 3 m to its rear.
+/// Room with walls 2 m ahead of the robot, 1.5 m to its left, 1 m to its right and 3 m behind it.
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[2, -1], [2, 1.5], [-3, 1.5], [-3, -1], [2, -1]]";
 
-/// Maximum time to wait for an answer, in milliseconds: longer than any machine takes.
+/// Timeout for an answer, in milliseconds: longer than any machine needs.
 const LONG: u64 = 60_000;
-/// Maximum time to wait for an answer that never arrives, in milliseconds.
+/// Timeout for an answer that never arrives, in milliseconds.
 const SHORT: u64 = 100;
 
 /// Steering that differs from the default.
 const STEERING: Steering = Steering { rotate: 1.0, align: 3.0, avoid: 1.5 };
 
-/// Connects a driver to the robot at this line; the driver waits at most `answer` milliseconds for each answer.
+/// Connects a driver to the robot at this line, with a timeout of `answer` milliseconds for each answer.
 fn connected(port: &Port, answer: u64) -> Result<Scout, Fault> {
     let mut config = Configured::read(None, port.path().to_str()).unwrap().config;
     config.answer = answer;
@@ -45,7 +45,7 @@ impl Drop for Ends<'_> {
     }
 }
 
-/// Returns the result of `drive` with a robot in the room, in lockstep.
+/// Runs `drive` with a robot in the room, in lockstep, and returns the result.
 fn with_robot<T>(drive: impl FnOnce(&mut Scout) -> T) -> T {
     let world = World::parse("room", ROOM).unwrap();
     let make = Make { body: Body::Scout, without: Vec::new(), seed: None };
@@ -62,13 +62,13 @@ fn with_robot<T>(drive: impl FnOnce(&mut Scout) -> T) -> T {
     })
 }
 
-/// Starts a driver and returns the result of one exchange. `answers` plays the robot: it is called with the number of
-/// each request, the request, and the line.
+/// Starts a driver and returns the result of one exchange. `answers` simulates the robot: it is called with the number
+/// of each request, the request, and the line.
 fn exchanged(patience: u64, answers: impl Fn(usize, &Request, &Port) + Sync) -> Result<(), Fault> {
     asked(patience, answers, |driver| driver.exchange(&Twist::default()).map(|_| ()))
 }
 
-/// Starts a driver and returns the result of `drive`. `answers` plays the robot, as in [`exchanged`].
+/// Starts a driver and returns the result of `drive`. `answers` simulates the robot, as in [`exchanged`].
 fn asked(
     patience: u64,
     answers: impl Fn(usize, &Request, &Port) + Sync,
@@ -96,7 +96,7 @@ fn fault_of(answers: impl Fn(usize, &Request) -> Vec<u8> + Sync) -> Fault {
     exchanged(SHORT, |count, request, port| port.write(&answers(count, request)).unwrap()).unwrap_err()
 }
 
-/// Returns the frame of an answer of type `kind` with the state of a robot that is at rest where it began.
+/// Returns the frame of an answer of type `kind` with the state of a robot at rest at its start pose.
 fn state(kind: u8) -> Vec<u8> {
     answer(kind, &[0; 42])
 }
@@ -124,7 +124,7 @@ fn commands_are_executed_and_reported() {
         assert_near("speed", y.velocity().v.0, 0.2, 0.005);
         assert_eq!(y.steering(), STEERING);
         driven(driver, 0.0, 0.0, 10);
-        // A quarter of a circle to the left: what was before it is to its right.
+        // A quarter turn to the left: the wall that was ahead is now on the right.
         let y = driven(driver, 0.0, 0.36, 44);
         assert_near("turn rate", y.velocity().omega.0, 0.36, 0.02);
         let y = driven(driver, 0.0, 0.0, 20);
@@ -166,7 +166,7 @@ fn a_robot_is_let_go_once_it_stands() {
 #[test]
 fn a_robot_whose_wheels_jitter_stands() {
     let stopped = |speed: u8| {
-        // Of both wheels, one forward and one back.
+        // Both wheels jitter, one forward and one backward.
         let mut state = [0; 42];
         (state[27], state[29], state[30]) = (speed, speed, 0x80);
         let answers = |_: usize, request: &Request, port: &Port| port.write(&answer(request.command, &state)).unwrap();
@@ -191,7 +191,8 @@ fn silence_garbage_and_other_robots_differ() {
     let mut stopped = [0; 42];
     stopped[35] = 0b0100_0000;
     assert_eq!(fault_of(|_, request| answer(request.command, &stopped)), Fault::EmergencyStop);
-    // In a turn as well as at the start, which takes four commands, ten looks at the sonars and a zero.
+    // The robot falls silent in a turn, not during the start, which takes four commands, ten sonar checks and a zero
+    // command.
     let late = |count: usize, request: &Request| if count < 15 { state(request.command) } else { Vec::new() };
     assert_eq!(fault_of(late), Fault::Line(LineFault::Silent));
 }
@@ -203,7 +204,7 @@ fn an_answer_may_come_in_pieces_and_behind_noise_and_another_one() {
         let another = if count % 4 == 2 { state(request.command ^ 0x40) } else { Vec::new() };
         for piece in [before, another, state(request.command)].concat().chunks(5) {
             port.write(piece).unwrap();
-            // As a line of 38400 baud would.
+            // As on a line with 38400 baud.
             thread::sleep(Duration::from_millis(1));
         }
     });
@@ -246,7 +247,7 @@ fn a_device_that_is_none_is_refused() {
     );
     assert_eq!(refused("/dev/null"), Fault::Line(LineFault::NotSerial("/dev/null".to_owned())));
     assert!(matches!(refused("tcp:example:1"), Fault::Line(LineFault::Open(..))));
-    // Nobody listens on the port that is reserved for nobody.
+    // No program listens on port 1, which is reserved.
     assert!(matches!(refused("tcp:127.0.0.1:1"), Fault::Line(LineFault::Open(..))));
     let port = Port::open().unwrap();
     let serial = port.path().to_str().unwrap();

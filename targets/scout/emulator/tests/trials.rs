@@ -1,5 +1,5 @@
-//! Runs the tests that every robot on a serial line has to pass, with the Super Scout and its driver, over a
-//! pseudo-terminal in lockstep.
+//! Runs the shared tests of robots on a serial line with the Super Scout and its driver, over a pseudo-terminal in
+//! lockstep.
 
 use std::time::Duration;
 
@@ -56,17 +56,17 @@ const EFFECTS: &[Effect] = &[
     Effect::of(&["emergency"], Still, &[LetGo]).fails("emergency stop is pressed"),
     Effect::of(&["check"], Still, &[LetGo]).fails("add up to").stop_fails("add up to"),
     Effect::of(&["lose"], Still, &[LetGo]).fails("does not answer").stop_fails("does not answer"),
-    // A robot that falls silent is asked again and again to stand.
+    // A robot that falls silent receives the stop command repeatedly.
     Effect::of(&["silence"], Still, &[Stand, Stand, Stand, Stand, Stand, LetGo])
         .fails("does not answer")
         .stop_fails("does not answer"),
     Effect::of(&["close"], Moves, &[Drive]).fails("line was cut").stop_fails("line was cut"),
-    // A robot that keeps moving: it obeys as long as it is asked for what it does anyway.
+    // A robot that ignores commands and keeps its speed appears to obey while that speed is commanded.
     Effect::of(&["runaway"], Moves, &[LetGo]).stop_fails("still moved"),
     Effect::of(&["runaway"], Moves, &[LetGo]).asked(Halts, 50).fails("does not obey").stop_fails("still moved"),
     Effect::of(&["deaf"], Moves, &[Drive]).fails("does not answer").stop_fails("does not answer"),
     Effect::of(&["hang"], Still, &[LetGo]).fails("clock has not advanced").stop_fails("still moved"),
-    // It has to move for a metre first.
+    // The fault is detected only after the robot has moved for a metre.
     Effect::of(&["no-pings"], Still, &[LetGo]).asked(Ahead, 90).fails("sonars say the same"),
     Effect::of(&["leap"], Still, &[LetGo]).fails("leap"),
 ];
