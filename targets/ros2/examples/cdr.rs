@@ -1,6 +1,7 @@
-//! Converts messages between CDR and JSON, for the comparison with another encoder: `tests/test_cdr.py` runs it.
+//! Converts messages between CDR and JSON, so that `tests/test_cdr.py` can compare them with another encoder's
+//! messages.
 //!
-//! A line of standard input is a type, `read` or `write`, and the bytes as hexadecimal digits or the JSON.
+//! Each line of standard input contains a type, `read` or `write`, and the bytes as hexadecimal digits or the JSON.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::panic, reason = "a program of tests, which fails loudly")]
 
 use std::io::stdin;
@@ -54,7 +55,7 @@ fn digits<T: Serialize>(message: &T) -> String {
     Payload::of(message).unwrap().bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Writes the nodes of a program with the ids of Humble, which the driver does not read.
+/// Writes the nodes of a program with the ids of Humble, a format that the driver does not read.
 fn written_with_long_ids(_: &str, text: &str) -> String {
     let mut info: m::ParticipantEntitiesInfo = serde_json::from_str(text).unwrap();
     info.gid.is_long = true;

@@ -1,6 +1,6 @@
-//! A control loop on the driver with nothing in it: no plan, no host. `tests/latency.py` compares its latency.
+//! An empty control loop on the driver, without plan and host, whose latency `tests/latency.py` compares.
 //!
-//! Usage: `empty_loop CONFIG.toml PERIOD_MS`. It drives backwards while sonar 0 hears something nearer than 60 cm.
+//! Usage: `empty_loop CONFIG.toml PERIOD_MS`. The robot drives backwards while sonar 0 hears an object within 60 cm.
 #![allow(clippy::unwrap_used, reason = "a program of the tests, which fails loudly")]
 
 use std::path::Path;
@@ -22,7 +22,7 @@ fn main() {
         DdsLink::connect(&config, Pacing::Wall, &request, begun).map_err(|fault| fault.to_string()).unwrap();
     let mut robot = Ros2::new(config, link, sensing, Pacing::Wall, request, begun);
     let (mut input, mut due) = (Input::default(), Instant::now());
-    // Until the robot has gone.
+    // Until the robot no longer answers.
     while let Ok(output) = robot.exchange(&input) {
         let is_near = output.pings[0].nearest(1).is_some_and(|range| range.0 < 0.6);
         input = Input { v: MetersPerSecond(if is_near { -0.1 } else { 0.1 }), omega: RadiansPerSecond(0.0) };

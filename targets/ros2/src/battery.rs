@@ -1,4 +1,4 @@
-//! Conversion of a battery message to the power supply of an output.
+//! Converts a battery message to the power supply of an output.
 
 use mdle_runtime::{Supply, Volts};
 
@@ -8,11 +8,11 @@ use crate::messages::BatteryState;
 const CHARGING: u8 = 1;
 const FULL: u8 = 4;
 
-/// Maximum charge: batteries report a little more than 1 when they are full, and some robots wrongly a percentage.
+/// Maximum valid charge: batteries report a little more than 1 when they are full. Percentages, which some robots
+/// wrongly report, are rejected.
 const MOST: f64 = 1.5;
 
-/// Returns the power supply that `message` reports. The battery is low if its charge, of which 1 is full, is below
-/// `low`.
+/// Returns the power supply that `message` reports. The battery is low if its charge (1 is full) is below `low`.
 ///
 /// # Errors
 /// Returns the reason, as the end of a sentence about the message, if the charge is not a number from 0 to 1.5.

@@ -1,15 +1,15 @@
-//! Capabilities that a configuration gives a robot, and the quarks of a plan that need a missing capability.
+//! Capabilities that the configuration gives a robot, and the check that a plan needs no missing capability.
 
 use std::fmt;
 
 use crate::choices::BumperSource;
 use crate::config::Config;
 
-/// Text of the alphabets that declare this robot's quarks: its own alphabet and the shared one.
+/// Alphabet files that declare this robot's quarks: its own and the shared one.
 const DECLARATIONS: [&str; 2] = [include_str!("../alphabet.mdle"), include_str!("../../../atoms/alphabet.mdle")];
 
-/// Optional capabilities, each with `true` if the configuration provides it, and the configuration keys that would
-/// provide it.
+/// Optional capabilities: the name, `true` if the configuration provides the capability, and the configuration keys
+/// that would provide it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Capabilities {
     optional: [(&'static str, bool, &'static str); 3],
@@ -48,8 +48,7 @@ impl Capabilities {
     }
 }
 
-/// Prints the robot's capabilities, and the optional ones that it lacks, as TOML comments that follow the
-/// configuration.
+/// Prints, as TOML comments that follow the configuration, the capabilities that the robot has and those that it lacks.
 impl fmt::Display for Capabilities {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let given = self.optional.iter().filter(|(_, is_there, _)| *is_there).map(|(name, _, _)| *name);
@@ -75,7 +74,7 @@ fn quarks(capability: &str) -> Vec<&'static str> {
     names
 }
 
-/// Returns the words of `text` that are not in quotes. The sonar `r3` yields its quark `r`.
+/// Returns the words of `text` outside quotes. The sonar `r3` yields its quark `r`.
 fn words(text: &str) -> impl Iterator<Item = &str> {
     let is_inside = |letter: char| letter.is_alphanumeric() || letter == '_';
     let words = text.split('"').step_by(2).flat_map(move |part| part.split(move |letter| !is_inside(letter)));

@@ -1,4 +1,4 @@
-//! Encoding of messages in Common Data Representation, as ROS 2 sends them over DDS (XCDR1, either byte order).
+//! Encodes and decodes messages in Common Data Representation, as ROS 2 sends them over DDS (XCDR1, either byte order).
 
 use rustdds::RepresentationIdentifier;
 use rustdds::serialization::{deserialize_from_cdr_with_rep_id, to_writer_with_rep_id};
@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 /// Maximum number of padding bytes after a message.
 const PADDING: usize = 3;
 
-/// An encoded message, without the header that names the encoding.
+/// An encoded message, without the encapsulation header.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Payload {
     /// Bytes of the encoded message.
@@ -31,7 +31,7 @@ impl Payload {
     /// Decodes the bytes as a message of type `T`.
     ///
     /// # Errors
-    /// Returns a phrase that gives the reason if the bytes are damaged or belong to a message with other fields.
+    /// Returns the reason, as a phrase, if the bytes are malformed or belong to a message with other fields.
     pub fn read<T: DeserializeOwned>(&self) -> Result<T, String> {
         let (message, length) = deserialize_from_cdr_with_rep_id(&self.bytes, self.encoding)
             .map_err(|error| format!("{} bytes that cannot be read ({error})", self.bytes.len()))?;

@@ -1,11 +1,11 @@
-//! Configuration values that are one of a few words, and places of sensors on the body.
+//! Configuration values that are one of a few words, and the mounting of range sensors on the body.
 
 use std::fmt;
 
 use mdle_serial::{Key, Setting, one_of, quoted, shortened};
 use serde::Deserialize;
 
-/// Distribution of ROS 2, which determines the layout of messages.
+/// ROS 2 distribution, which determines the layout of messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Distribution {
     /// The distribution Humble Hawksbill.
@@ -19,7 +19,7 @@ pub enum Distribution {
 /// Type of the velocity command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stamped {
-    /// The type to which a program on the graph subscribes.
+    /// The type to which a program on the graph subscribes; without a time stamp if programs subscribe to both types.
     Auto,
     /// The type `geometry_msgs/msg/TwistStamped`.
     Yes,
@@ -36,11 +36,11 @@ pub enum BumperSource {
     Bool,
     /// A topic of type `irobot_create_msgs/msg/HazardDetectionVector`.
     Hazard,
-    /// The scan: a ray that is shorter than the body and its margin presses a switch.
+    /// The laser scan: an obstacle within the margin around the body presses a switch.
     Scan,
 }
 
-/// Implements [`Setting`] for enumerations, each variant with the word that selects it in the configuration.
+/// Implements [`Setting`] for enumerations; each variant is selected by a word in the configuration.
 macro_rules! words {
     ($($type:ident: $($word:literal $variant:ident),*;)*) => {
         $(impl Setting for $type {
@@ -101,7 +101,7 @@ impl Setting for Stamped {
     }
 }
 
-/// A range sensor with a topic of its own, and its place on the body.
+/// A range sensor with its own topic, and its mounting on the body.
 #[derive(Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RangeSensor {
@@ -149,7 +149,7 @@ impl Setting for RangeSensors {
             for (key, value, most, unit) in
                 [("x", sensor.x, 10.0, "m"), ("y", sensor.y, 10.0, "m"), ("yaw", sensor.yaw, 6.3, "rad")]
             {
-                // A value that is no number is not within the limits either.
+                // NaN is outside the limits as well.
                 if !(-most..=most).contains(&value) {
                     let topic = shortened(&sensor.topic);
                     let value = if value.abs() < 1e6 { value.to_string() } else { format!("{value:e}") };

@@ -1,4 +1,4 @@
-//! The other programs that subscribe to velocity commands or publish them, in sentences.
+//! Other programs that subscribe to velocity commands or publish them, and sentences that describe them.
 
 use crate::choices::Stamped;
 use crate::graph::{Endpoint, Graph};
@@ -10,8 +10,8 @@ pub(crate) const TWIST: &str = "geometry_msgs/msg/Twist";
 pub(crate) const TWIST_STAMPED: &str = "geometry_msgs/msg/TwistStamped";
 
 impl Graph {
-    /// Returns `true` if velocity commands have a time stamp; `None` if that depends on a subscriber that has not been
-    /// found. Of subscribers of both types, those without a time stamp count.
+    /// Returns `true` if velocity commands have a time stamp, and `None` if that depends on a subscriber that has not
+    /// been found. If there are subscribers of both types, commands have no time stamp.
     #[must_use]
     pub fn is_stamped(&self, topic: &str, stamped: Stamped) -> Option<bool> {
         let takes = |kind: &str| self.readers_of(topic).any(|reader| reader.kind == dds_type(kind));
@@ -23,7 +23,7 @@ impl Graph {
         }
     }
 
-    /// Returns a sentence about velocity commands that no program takes.
+    /// Returns a sentence that explains why no program receives the velocity commands.
     #[must_use]
     pub fn about_commands(&self, topic: &str, stamped: Stamped) -> String {
         let kinds = match stamped {
@@ -59,8 +59,8 @@ impl Graph {
         }
     }
 
-    /// Returns a sentence about subscribers of both types of velocity commands, of which `is_stamped` selects one;
-    /// `None` if all have the same type, or if the configuration has chosen it.
+    /// Returns a warning that there are subscribers of both types of velocity commands, of which `is_stamped` selects
+    /// one; `None` if all have the same type, or if the configuration selects the type.
     #[must_use]
     pub fn about_types(&self, topic: &str, stamped: Stamped, is_stamped: bool) -> Option<String> {
         let takes = |kind: &str| self.readers_of(topic).any(|reader| reader.kind == dds_type(kind));
@@ -75,7 +75,7 @@ impl Graph {
         ))
     }
 
-    /// Returns a sentence about the other publishers of the velocity commands `topic`; `None` if there are none.
+    /// Returns a warning that other programs publish the velocity commands `topic`; `None` if there are none.
     #[must_use]
     pub fn about_rivals(&self, topic: &str) -> Option<String> {
         let (others, them) = match self.writers_of(topic).count() {

@@ -1,4 +1,4 @@
-//! The writer of velocity commands, and the zero velocity with which a run ends.
+//! Sends velocity commands, and the zero velocity with which a run ends.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use crate::messages::{Header, Time, TwistMessage, TwistStamped, Vector3};
 use crate::names::dds_type;
 use crate::participant::{Delivery, Participant, Writer};
 
-/// Time between two repetitions of the zero velocity.
+/// Interval at which the zero velocity is repeated.
 const AGAIN: Duration = Duration::from_millis(100);
 /// Minimum number of repetitions: a suspension of the program uses up time.
 const TIMES: u32 = 5;
@@ -42,7 +42,7 @@ impl Commands {
         Ok(Self { topic: topic.to_owned(), frame: config.frame_id.clone(), writer, is_stamped })
     }
 
-    /// Returns a writer of the same commands by another participant.
+    /// Returns a writer of the same commands that belongs to `participant`.
     pub(crate) fn by(&self, participant: &Participant) -> Result<Self, Fault> {
         let writer = participant.writer(&self.topic, self.kind(), Delivery::Reliable)?;
         let (topic, frame) = (self.topic.clone(), self.frame.clone());
@@ -54,9 +54,9 @@ impl Commands {
         kind_of(self.is_stamped)
     }
 
-    /// Returns `true` if a program on the graph subscribes to the commands, and the middleware has matched it.
+    /// Returns `true` if a program on the graph subscribes to commands of this type, and the middleware has matched it.
     pub(crate) fn are_heard(&mut self, graph: &Graph) -> bool {
-        // The middleware also matches a subscriber of another type, which understands nothing.
+        // The middleware also matches a subscriber of another type, which cannot decode the commands.
         let kind = dds_type(self.kind());
         self.writer.matched() > 0 && graph.readers_of(&self.topic).any(|reader| reader.kind == kind)
     }
@@ -74,17 +74,17 @@ impl Commands {
         self.writer.write(payload?)
     }
 
-    /// Sends a zero velocity until all subscribers that acknowledge messages have done so, or until `limit` has passed.
-    /// Returns `false` if no subscriber acknowledges messages.
+    /// Sends a zero velocity until all reliable subscribers have acknowledged it, or until `limit` has passed. Returns
+    /// `false` if no subscriber is reliable.
     ///
     /// # Errors
-    /// Fails if no subscriber has acknowledged the zero velocity.
+    /// Fails if the reliable subscribers have not acknowledged the zero velocity in time, or if there is no subscriber.
     pub(crate) fn halt(&mut self, participant: &Participant, limit: Duration, stamp: i64) -> Result<bool, Fault> {
         let begun = Instant::now();
         let acknowledges = participant.graph().readers_of(&self.topic).any(|reader| reader.is_reliable);
         for times in 1.. {
             let sent = self.send(Twist::default(), stamp);
-            // Without subscribers everything counts as acknowledged.
+            // Without subscribers, the middleware reports every message as acknowledged.
             if sent.is_ok() && acknowledges && self.writer.is_acknowledged(AGAIN) && self.writer.matched() > 0 {
                 return Ok(true);
             }
@@ -103,23 +103,23 @@ impl Commands {
         }
     }
 
-    /// Sends a zero velocity repeatedly for the time `limit`, and then as [`Commands::halt`] does: a subscriber that
-    /// has just been found may acknowledge, unread, what was sent before it had found this writer in turn.
+    /// Sends a zero velocity repeatedly for the time `limit`, and then calls [`Commands::halt`]. A subscriber that has
+    /// just been found may not have found this writer yet: it then acknowledges earlier messages without reading them.
     ///
     /// # Errors
-    /// Fails if no subscriber has acknowledged the last zero velocity.
+    /// Fails if the reliable subscribers have not acknowledged the last zero velocity, or if there is no subscriber.
     pub(crate) fn insist(&mut self, participant: &Participant, limit: Duration, stamp: i64) -> Result<bool, Fault> {
         let begun = Instant::now();
         while begun.elapsed() < limit {
-            // `halt` reports that it cannot be sent.
+            // `halt` reports an error if sending continues to fail.
             let _ = self.send(Twist::default(), stamp);
             sleep(AGAIN);
         }
         self.halt(participant, limit, stamp)
     }
 
-    /// Sends a zero velocity repeatedly until as many subscribers as `expected` have been found, or until the maximum
-    /// time has passed. The first that is found need not be the robot.
+    /// Sends a zero velocity repeatedly until `expected` subscribers have been found, or until [`REJOINING`] has
+    /// passed. The first subscriber that is found may be another program than the robot.
     ///
     /// # Errors
     /// Fails if fewer subscribers were found.
@@ -134,7 +134,7 @@ impl Commands {
             }
             if self.writer.matched() > 0 && passed >= due {
                 due = passed + AGAIN;
-                // `halt` reports that it cannot be sent.
+                // `halt` reports an error if sending continues to fail.
                 let _ = self.send(Twist::default(), stamp);
             }
             sleep(LOOK);

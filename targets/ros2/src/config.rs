@@ -11,7 +11,7 @@ use mdle_serial::{Key, Settings, Steering, shortened};
 use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
 use crate::names::absolute;
 
-/// Maximum id of a DDS domain: higher ids have no ports.
+/// Maximum DDS domain id: higher ids have no ports.
 const LAST_DOMAIN: u64 = 232;
 
 /// Declares the configuration. Each line declares one key: `name: type = default, in range, "unit" "help";`.
@@ -24,11 +24,11 @@ macro_rules! configuration {
         #[derive(Debug, Clone, PartialEq)]
         pub struct Config {
             $($(#[$meta])* pub $key: $type,)*
-            /// Gains with which laws steer.
+            /// Gains of the laws that steer.
             pub steering: Steering,
         }
 
-        /// Returns the values of `settings`, and the default of each missing key.
+        /// Returns the values of `settings`, with the default for each missing key.
         fn values(settings: &mut Settings) -> Result<Config, String> {
             Ok(Config {
                 $($key: settings.value(
@@ -50,13 +50,13 @@ macro_rules! configuration {
 }
 
 configuration! {
-    /// Distribution of ROS 2 on the robot.
+    /// ROS 2 distribution on the robot.
     distribution: Distribution = "jazzy".to_owned(), "" "humble, jazzy or kilted";
     /// DDS domain id; the default is the value of the environment variable `ROS_DOMAIN_ID`.
     domain: u64 = given_domain().unwrap_or_default(), in 0..=232, "" "domain id; its default is that of ROS_DOMAIN_ID";
     /// Namespace of relative topics.
     namespace: String = String::new(), "" "namespace of topics without a slash in front";
-    /// Address of the only network to use; empty for all networks.
+    /// Address of the only network interface to use; empty for all networks.
     network: String = String::new(), "" "address of the only network to use; empty for all";
     /// Topic of velocity commands.
     cmd_vel: String = "cmd_vel".to_owned(), "" "topic of velocity commands";
@@ -69,9 +69,9 @@ configuration! {
     odom: String = "odom".to_owned(), "" "topic of nav_msgs/Odometry";
     /// Topic of the laser scan; empty if the robot has no scanner.
     scan: String = "scan".to_owned(), "" "topic of sensor_msgs/LaserScan; empty without one";
-    /// Distance from the body's centre ahead to the scanner, in metres.
+    /// Distance of the scanner ahead of the body's centre, in metres.
     scan_x: f64 = 0.0, in -10..=10, "m" "from the centre ahead to the scanner";
-    /// Distance from the body's centre to the left to the scanner, in metres.
+    /// Distance of the scanner to the left of the body's centre, in metres.
     scan_y: f64 = 0.0, in -10..=10, "m" "from the centre to the left to the scanner";
     /// Direction of the scanner's zero angle, in radians, counter-clockwise from the front.
     scan_yaw: f64 = 0.0, in -6.3..=6.3, "rad" "from the front to the scanner's zero, counter-clockwise";
@@ -83,9 +83,9 @@ configuration! {
     bumper_type: BumperSource = "none".to_owned(), "" "none, bool, hazard or scan";
     /// Topic of the bumper, if its messages are of type `Bool` or `HazardDetectionVector`.
     bumper: String = "bumper".to_owned(), "" "topic of a bumper that is bool or hazard";
-    /// Margin around the body within which a ray of the scan is a contact, in metres.
+    /// Distance from the body within which an obstacle in the scan counts as a contact, in metres.
     bumper_margin: f64 = 0.02, in 0.0..=1.0, "m" "around the body, for a bumper by scan";
-    /// Topic of the battery; empty if no battery is read.
+    /// Topic of the battery; empty if the robot reports no battery.
     battery: String = String::new(), "" "topic of sensor_msgs/BatteryState; empty without one";
     /// Charge below which the battery is low, from 0 to 1.
     low_battery: f64 = 0.15, in 0.0..=1.0, "" "of the charge, below which the battery is low";
@@ -97,7 +97,7 @@ configuration! {
     half_width: f64 = 0.0, in 0.0..=5.0, "m" "half the width of the body; 0 for a round one";
     /// Distance between the wheels, in metres.
     wheel_base: f64 = 0.23, in 0.01..=5.0, "m" "between the wheels";
-    /// Distance from the centre at which ranges of the sixteen directions begin, in metres.
+    /// Distance from the centre from which the ranges of the sixteen directions are measured, in metres.
     ring_radius: f64 = 0.18, in 0.0..=5.0, "m" "from the centre to where ranges of directions begin";
     /// Maximum speed, in m/s.
     fastest: f64 = 0.3, in 0.01..=2.0, "m/s" "maximum speed";
@@ -109,11 +109,11 @@ configuration! {
     stale_scan: u64 = 1000, in 50..=60_000, "ms" "without a scan or a range until the robot is stopped";
     /// Time without a bumper message after which the robot is stopped, in milliseconds; 0 for no limit.
     stale_bumper: u64 = 0, in 0..=60_000, "ms" "without the bumper until the robot is stopped; 0 for no limit";
-    /// Distance by which odometry may differ from the longest path that the robot can have driven, in metres.
+    /// Distance by which a step of odometry may exceed the longest path that the robot can have driven, in metres.
     jump: f64 = 0.3, in 0.01..=100.0, "m" "by which odometry may differ from the fastest way";
     /// Maximum time to find all topics of the robot, in milliseconds.
     discovery: u64 = 10_000, in 100..=600_000, "ms" "to find all topics";
-    /// `true` if the topic `/clock` gives the time.
+    /// `true` if time is read from the topic `/clock`.
     use_sim_time: bool = false, "" "time is that of the topic /clock";
     /// Topic of the plan's state as JSON text; empty if it is not published.
     state: String = "mdle/state".to_owned(), "" "topic of the plan's state, as JSON; empty for none";
@@ -154,8 +154,8 @@ impl Configured {
     /// Reads the configuration file `file`; without a file, returns the defaults.
     ///
     /// # Errors
-    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the
-    /// place and reason.
+    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The message gives the
+    /// place and the reason.
     pub fn read(file: Option<&Path>) -> Result<Self, String> {
         let mut settings = Settings::read(file)?;
         if !settings.has("domain") {
@@ -168,8 +168,8 @@ impl Configured {
     }
 }
 
-/// Prints the configuration as TOML that `--config` can read. The default domain is a comment: in the file it would
-/// overrule `ROS_DOMAIN_ID`.
+/// Prints the configuration as TOML that `--config` can read. The default domain is printed as a comment, because a
+/// domain in the file overrides `ROS_DOMAIN_ID`.
 impl fmt::Display for Configured {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for line in self.settings.to_string().lines() {
@@ -184,12 +184,12 @@ impl Config {
     /// Returns the absolute name of the topic `name`.
     ///
     /// # Errors
-    /// Returns a sentence with the reason if `name` is not a valid topic name.
+    /// Returns the reason, as a sentence, if `name` is not a valid topic name.
     pub fn topic(&self, name: &str) -> Result<String, String> {
         absolute(&self.namespace, name)
     }
 
-    /// Returns the longest time that the robot may be without a command.
+    /// Returns the maximum time between two commands to the robot.
     #[must_use]
     pub fn longest_gap(&self) -> Duration {
         Duration::from_millis(self.stale_odom.max(self.stale_scan))

@@ -1,13 +1,13 @@
-//! Bumper switches that a message presses.
+//! Derives the pressed bumper switches from a message.
 
 use crate::config::Config;
 use crate::messages::HazardDetectionVector;
 use crate::scan::Scanner;
 
-/// Value of a hazard's field `type` that means contact.
+/// Value of the field `type` of a hazard that is a contact.
 const BUMP: u8 = 1;
 
-/// Frames of the zones of a Create 3's bumper from left to right, which is the order of the switches.
+/// Frames of the zones of a Create 3's bumper from left to right, in the order of the switches.
 const ZONES: [&str; 5] = ["bump_left", "bump_front_left", "bump_front_center", "bump_front_right", "bump_right"];
 
 /// Returns the switches that `hazards` press: one bit for each bumper zone of a Create 3, and one bit for other

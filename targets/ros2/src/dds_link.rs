@@ -23,12 +23,12 @@ use crate::sensing::Sensing;
 use crate::source::{Input, Source};
 use crate::stamp::ros_now;
 
-/// Maximum number of new participants with which the driver looks for the robot after the first participant.
+/// Maximum number of further participants with which the driver searches for the robot.
 const REJOINS: u32 = 2;
-/// Minimum time without a turn after which the middleware may have forgotten the robot, and the robot this program.
-/// CycloneDDS and RustDDS take a program that is silent for 10 s for dead, others later.
+/// Minimum time without a turn after which the middleware may have dropped the robot, and the robot may have dropped
+/// this program. CycloneDDS and RustDDS consider a program that is silent for 10 s dead, others later.
 const FORGOTTEN: Duration = Duration::from_secs(8);
-/// Maximum number of participants with which a robot is stopped that may have been forgotten.
+/// Maximum number of new participants with which the driver tries to stop a robot that may have been dropped.
 const ATTEMPTS: u32 = 3;
 
 /// A link to the robot over DDS.
@@ -38,9 +38,9 @@ pub struct DdsLink {
     commands: Commands,
     /// Number of subscribers of the last command before a suspension.
     subscribers: i32,
-    /// Time of the last command or look for messages.
+    /// Time of the last command or check for messages.
     active: Instant,
-    /// `true` if the program was suspended for so long that the middleware may have forgotten the robot.
+    /// `true` if the program was suspended for so long that the middleware may have dropped the robot.
     may_be_forgotten: bool,
     config: Config,
     state: Option<Writer>,
@@ -74,7 +74,7 @@ impl DdsLink {
     }
 
     /// Joins the domain, and waits until all topics have been found. Returns `None` if `may_rejoin` is `true` and a
-    /// publisher does not seem to know this participant.
+    /// publisher does not appear to have found this participant.
     fn join(search: &Search<'_>, pacing: Pacing, may_rejoin: bool) -> Result<Option<(Self, Sensing)>, Fault> {
         let config = search.config;
         let mut sensing = Sensing::new(config).map_err(Fault::Middleware)?;
@@ -115,8 +115,8 @@ impl DdsLink {
         Ok(Some((link, sensing)))
     }
 
-    /// Returns sentences about other publishers of the velocity commands, and about subscribers of two types, as far as
-    /// they have been found.
+    /// Returns warnings, as sentences, about other publishers of the velocity commands and about subscribers of both
+    /// types that have been found so far.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let (graph, Commands { topic, is_stamped, .. }) = (self.participant.graph(), &self.commands);
@@ -141,13 +141,13 @@ impl DdsLink {
         let info = ParticipantEntitiesInfo { gid: gid(self.participant.gid()), node_entities_info_seq: vec![node] };
         let kind = "rmw_dds_common/msg/ParticipantEntitiesInfo";
         let writer = self.participant.dds_writer("ros_discovery_info", kind, Delivery::Latched)?;
-        // Without it the robot drives as well.
+        // The robot can be driven without this announcement.
         Ok(Payload::of(&info).and_then(|payload| writer.write(payload)).ok().map(|()| writer))
     }
 }
 
 impl DdsLink {
-    /// Notices whether the program was suspended since the last call.
+    /// Records whether the program was suspended since the last call.
     fn notice_suspension(&mut self) {
         self.may_be_forgotten |= self.active.elapsed() >= FORGOTTEN;
         self.active = Instant::now();
@@ -158,7 +158,7 @@ impl DdsLink {
         self.clock.unwrap_or_else(ros_now)
     }
 
-    /// Stops the robot with a new participant, which first finds the subscribers that the first one had.
+    /// Stops the robot with a new participant, after finding as many subscribers as the first participant had.
     fn halt_anew(&self, limit: Duration) -> Result<bool, Fault> {
         let (expected, stamp) = (self.subscribers.max(1), self.stamp());
         let participant = Participant::join(&self.config)?;
@@ -214,7 +214,7 @@ impl Link for DdsLink {
     fn publish(&mut self, messages: StateMessages) {
         for (writer, payload) in [(&self.state, messages.text), (&self.diagnostics, messages.diagnostics)] {
             if let Some(writer) = writer {
-                // Nobody waits for it.
+                // The state is published on a best-effort basis: the plan does not depend on it.
                 let _ = writer.write(payload);
             }
         }

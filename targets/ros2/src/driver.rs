@@ -1,5 +1,5 @@
 //! The driver of a robot that speaks ROS 2, as a kinetic state machine: the input is a velocity command, and the output
-//! consists of the last messages.
+//! combines the latest messages.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ use crate::report::PlanState;
 use crate::sensing::Sensing;
 use crate::stamp::ros_now;
 
-/// Time between two checks for messages.
+/// Interval between two checks for messages.
 pub(crate) const LOOK: Duration = Duration::from_micros(500);
 /// Maximum real time to wait for a robot whose time is not the host's clock.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -32,7 +32,7 @@ const JUDGED: Duration = Duration::from_secs(1);
 const STANDING: Duration = Duration::from_millis(200);
 /// Speeds below which the robot counts as being at rest.
 const REST: Twist = Twist { v: MetersPerSecond(0.02), omega: RadiansPerSecond(0.05) };
-/// Time after which an unchanged state of the plan is published again.
+/// Interval after which an unchanged state of the plan is published again.
 const REPEAT: Nanos = Nanos(1_000_000_000);
 
 /// A robot that speaks ROS 2 and is reached through the link `L`.
@@ -43,12 +43,12 @@ pub struct Ros2<L> {
     sensing: Sensing,
     pacing: Pacing,
     times: Times,
-    /// Moment at which connecting to the robot began.
+    /// Time at which connecting to the robot began.
     begun: Moment,
     request: StopRequest,
     /// Time of `/clock` at the first turn, in nanoseconds.
     origin: Option<i64>,
-    /// Latest time of `/clock` so far, in nanoseconds; 0 if time is not that of `/clock`.
+    /// Latest time of `/clock` so far, in nanoseconds; 0 if `/clock` is not used.
     latest: i64,
     turns: u32,
     /// Number of the atom and time of the turn in the last published state.
@@ -79,8 +79,8 @@ impl<L: Link> Ros2<L> {
         self.sensing.paths = paths;
     }
 
-    /// Returns `input` within the maximum speeds: both speeds are reduced by the same factor, so that the robot stays
-    /// on its curve.
+    /// Returns `input` limited to the maximum speeds: both speeds are reduced by the same factor, so that the robot
+    /// stays on its curve.
     fn limited(&self, input: &Twist) -> Result<Twist, Fault> {
         if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
             return Err(Fault::NoNumber);
@@ -90,7 +90,7 @@ impl<L: Link> Ros2<L> {
         Ok(Twist { v: MetersPerSecond(input.v.0 * scale), omega: RadiansPerSecond(input.omega.0 * scale) })
     }
 
-    /// Returns the current time for the age of messages.
+    /// Returns the current time, from which the age of messages is computed.
     fn now(&self) -> Duration {
         match self.pacing {
             Pacing::Wall => self.begun.elapsed(),
@@ -99,7 +99,7 @@ impl<L: Link> Ros2<L> {
         }
     }
 
-    /// Passes the messages that have arrived to the robot's sensing.
+    /// Passes the messages that have arrived to [`Sensing`].
     fn receive(&mut self, at: Nanos) -> Result<(), Fault> {
         let now = self.now();
         let sensing = &mut self.sensing;
@@ -109,8 +109,8 @@ impl<L: Link> Ros2<L> {
     /// Updates the latest time of `/clock`.
     ///
     /// # Errors
-    /// Fails if `/clock` has gone back by more than [`BACK`]. Turns would otherwise wait until it has caught up, and
-    /// the robot would be driven on.
+    /// Fails if `/clock` has gone back by more than [`BACK`]. Turns would wait until it has caught up, while the robot
+    /// continues to drive.
     fn follow_clock(&mut self) -> Result<(), Fault> {
         let clock = self.sensing.clock();
         let back = self.latest.saturating_sub(clock);
@@ -144,7 +144,7 @@ impl<L: Link> Ros2<L> {
         }
     }
 
-    /// Sends a velocity, and receives the messages that answer it.
+    /// Sends a velocity command, and receives the messages that follow it.
     fn turn(&mut self, twist: Twist, at: Nanos) -> Result<(), Fault> {
         self.turns = self.turns.saturating_add(1);
         match self.pacing {
@@ -153,7 +153,7 @@ impl<L: Link> Ros2<L> {
                 self.receive(at)
             }
             Pacing::Lockstep(_) => {
-                // A robot that has no command yet repeats its messages.
+                // In lockstep, a robot without a command repeats its messages.
                 self.receive(at)?;
                 let (before, _) = self.sensing.stamps();
                 self.link.command(twist)?;
@@ -173,7 +173,7 @@ impl<L: Link> Ros2<L> {
         }
     }
 
-    /// Returns the speeds that the last odometry reports, without signs.
+    /// Returns the absolute speeds that the last odometry reports.
     fn speeds(&self) -> Twist {
         let velocity = self.sensing.sensed(Nanos::ZERO).map(|sensed| sensed.velocity).unwrap_or_default();
         Twist { v: MetersPerSecond(velocity.v.0.abs()), omega: RadiansPerSecond(velocity.omega.0.abs()) }

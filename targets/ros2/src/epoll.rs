@@ -1,10 +1,10 @@
-//! Functions of epoll(7), linked in place of those of the C library, that a suspension does not interrupt.
+//! Replacements for the epoll(7) functions of the C library that continue to wait after the program was suspended.
 //!
 //! After a suspension (SIGSTOP, Ctrl-Z, an attached debugger) Linux ends each `epoll_wait` with `EINTR`, see signal(7).
-//! The threads of RustDDS take this for an error and end for good: the robot could then neither be heard nor stopped.
-//! Here such a wait goes on until its time has passed.
+//! The threads of RustDDS treat this as an error and end permanently: the robot could then neither be heard nor
+//! stopped. The replacements resume the wait until its timeout.
 //!
-//! The C library musl has all of these functions in one object, so that all have to be replaced where one is.
+//! The C library musl defines all of these functions in one object file, so replacing one requires replacing all.
 #![allow(unsafe_code, reason = "the linker finds functions by names that are not mangled, and the system fills memory")]
 
 use std::ffi::{c_int, c_long};
@@ -14,27 +14,27 @@ use std::time::Instant;
 
 use libc::{SYS_epoll_create1, SYS_epoll_ctl, SYS_epoll_pwait, epoll_event, sigset_t, syscall};
 
-/// Number of bytes in the system's set of signals.
+/// Size of the system's signal set, in bytes.
 const SIGNALS: usize = 8;
 
-/// Creates an instance of epoll.
+/// Creates an epoll instance.
 #[unsafe(no_mangle)]
 extern "C" fn epoll_create1(flags: c_int) -> c_int {
     // SAFETY: the call gets no pointer.
     narrow(unsafe { syscall(SYS_epoll_create1, flags) })
 }
 
-/// Adds, changes or removes the file descriptor `fd` of the instance `epoll`.
+/// Adds, changes or removes the file descriptor `fd` of the epoll instance `epoll`.
 ///
 /// # Safety
 /// `event` is null or points to an event.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn epoll_ctl(epoll: c_int, operation: c_int, fd: c_int, event: *mut epoll_event) -> c_int {
-    // SAFETY: what the caller promises is what the call needs.
+    // SAFETY: the caller guarantees that `event` is null or points to an event.
     narrow(unsafe { syscall(SYS_epoll_ctl, epoll, operation, fd, event) })
 }
 
-/// Waits for events of the instance `epoll` for `timeout` milliseconds; for ever if `timeout` is negative.
+/// Waits for events of the epoll instance `epoll` for `timeout` milliseconds; without limit if `timeout` is negative.
 ///
 /// # Safety
 /// `events` points to space for `most` events.
@@ -44,7 +44,7 @@ unsafe extern "C" fn epoll_wait(epoll: c_int, events: *mut epoll_event, most: c_
     let mut left = timeout;
     loop {
         let no_signals = ptr::null::<sigset_t>();
-        // SAFETY: what the caller promises is what the call needs; without signals it reads no set.
+        // SAFETY: the caller guarantees the space for `most` events; with a null signal set, the call reads no signals.
         let found = unsafe { syscall(SYS_epoll_pwait, epoll, events, most, left, no_signals, SIGNALS) };
         if found >= 0 || Error::last_os_error().kind() != ErrorKind::Interrupted {
             return narrow(found);
@@ -56,7 +56,7 @@ unsafe extern "C" fn epoll_wait(epoll: c_int, events: *mut epoll_event, most: c_
     }
 }
 
-/// Returns the result of a call as the type of its function: a small number, or -1.
+/// Converts the result of a system call (a small number, or -1) to the function's return type.
 fn narrow(result: c_long) -> c_int {
     c_int::try_from(result).unwrap_or(-1)
 }

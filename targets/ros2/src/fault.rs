@@ -8,11 +8,11 @@ use mdle_runtime::Twist;
 /// Reason why the driver ends a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fault {
-    /// The middleware does not work, for the reason in this sentence.
+    /// The middleware does not work; contains the reason as a sentence.
     Middleware(String),
-    /// This computer does not have the address of the only network to use, for the reason in this sentence.
+    /// This computer does not have the address of the only network to use; contains the reason as a sentence.
     Network(String),
-    /// Topics are missing; the sentences name these topics and those on the graph.
+    /// Topics are missing; the text names them and the topics on the graph.
     Missing(String),
     /// The run was asked to end while the driver was searching for the robot.
     Ended,
@@ -35,13 +35,14 @@ pub enum Fault {
         /// Time between the two messages, in seconds.
         seconds: f64,
     },
-    /// Several programs publish a topic that may have one publisher only.
+    /// Several programs publish a topic that must have only one publisher.
     Several {
         /// Name of the topic.
         topic: String,
         /// Number of programs that publish the topic.
         count: usize,
-        /// `true` if each publisher sent only after the one before had ceased, as after a restart of the robot.
+        /// `true` if each publisher began to send only after the previous one had stopped, as after a restart of the
+        /// robot.
         may_be_restart: bool,
     },
     /// The last message of a topic is too old.
@@ -57,11 +58,11 @@ pub enum Fault {
     },
     /// No program subscribes to velocity commands any longer; the text is the topic's name.
     Unheard(String),
-    /// Odometry reports that the robot drives on after the zero velocity.
+    /// Odometry reports that the robot continues to drive after the zero velocity.
     Moving {
         /// Name of the topic of the odometry.
         topic: String,
-        /// Speeds of the robot, without signs.
+        /// Absolute speeds of the robot.
         twist: Twist,
     },
     /// Not all subscribers of velocity commands were found again after a long suspension.
@@ -142,7 +143,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Returns a distance in metres as a message writes it, which stays short.
+/// Formats a distance in metres for a message; large distances are written in exponential notation.
 fn distance(meters: f64) -> String {
     if meters < 1e6 { format!("{meters:.2}") } else { format!("{meters:.0e}") }
 }

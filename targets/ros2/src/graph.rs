@@ -16,9 +16,9 @@ pub struct Endpoint {
     pub topic: String,
     /// Name of the message type in DDS.
     pub kind: String,
-    /// `true` if the reader acknowledges messages, or the writer waits for acknowledgements.
+    /// `true` if delivery is reliable: the reader acknowledges messages, or the writer waits for acknowledgements.
     pub is_reliable: bool,
-    /// Quality of service that does not match the driver's.
+    /// Quality of service that does not match the driver's; `None` if all settings match.
     pub mismatch: Option<String>,
 }
 
@@ -44,14 +44,15 @@ impl Graph {
         self.writers.iter().filter(move |writer| writer.topic == name)
     }
 
-    /// Returns the number of writers of the topic of `input` that have its type.
+    /// Returns the number of publishers of the topic of `input` whose message type is that of `input`.
     #[must_use]
     pub fn publishers(&self, input: &Input) -> usize {
         let kind = dds_type(input.kind);
         self.writers_of(&input.topic).filter(|writer| writer.kind == kind).count()
     }
 
-    /// Returns `true` if the topic of `input` has publishers, and all have its type and its quality of service.
+    /// Returns `true` if the topic of `input` has publishers, and all have the expected type and a matching quality of
+    /// service.
     #[must_use]
     pub fn is_offered(&self, input: &Input) -> bool {
         let kind = dds_type(input.kind);
@@ -59,8 +60,8 @@ impl Graph {
         writers.peek().is_some() && writers.all(|writer| writer.kind == kind && writer.mismatch.is_none())
     }
 
-    /// Returns a sentence about a topic from which no message could be read; `left_out` is the reason why a message was
-    /// rejected.
+    /// Returns a sentence that explains why no message of a topic could be read; `left_out` is the reason why a message
+    /// was rejected.
     #[must_use]
     pub fn about_input(&self, input: &Input, left_out: &str) -> String {
         let Input { topic, kind, .. } = input;
@@ -78,8 +79,8 @@ impl Graph {
         }
     }
 
-    /// Returns sentences about all missing topics and about the topics that are on the graph instead. If no program
-    /// answers, the text says only that.
+    /// Returns an error message about all missing topics, with the topics that are on the graph. If no other program is
+    /// on the graph, the message reports only that.
     #[must_use]
     pub fn about_missing(&self, missing: &[String], config: &Config) -> String {
         let is_empty = !self.readers.iter().chain(&self.writers).any(|endpoint| ros_topic(&endpoint.topic).is_some());
@@ -93,7 +94,7 @@ impl Graph {
         format!("{}{more}; {listed}", missing.join("; "))
     }
 
-    /// Returns a sentence that lists all topics on the graph, those with publishers before those with subscribers.
+    /// Returns a sentence that lists the topics on the graph, those with publishers before those with subscribers.
     #[must_use]
     pub fn listed(&self, config: &Config) -> String {
         let domain = config.domain;
@@ -111,7 +112,7 @@ impl Graph {
     }
 }
 
-/// Returns a list of the topics of `endpoints` with their types; `None` if no topic belongs to ROS 2.
+/// Returns a list of the topics of `endpoints` with their types; `None` if none of them is a ROS 2 topic.
 fn listed_topics(endpoints: &[Endpoint]) -> Option<String> {
     let mut topics: Vec<_> = endpoints
         .iter()

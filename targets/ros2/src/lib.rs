@@ -1,8 +1,8 @@
-//! The target of a robot that speaks ROS 2: its topics, its driver, and its alphabet.
+//! The target for robots that speak ROS 2: topics, driver and alphabet.
 //!
 //! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has. The
-//! module [`sensing`] turns the messages of topics into the output of a turn, without input or output of its own.
-//! [`Link`] hides the middleware.
+//! module [`sensing`] combines the messages of all topics into the output of a turn and performs no I/O. [`Link`]
+//! abstracts the middleware.
 
 pub mod alphabet;
 pub mod battery;

@@ -1,4 +1,4 @@
-//! The interface between the driver and the middleware, which a test can replace.
+//! The interface between the driver and the middleware, which tests can replace.
 
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ pub trait Link {
     /// Fails if no program subscribes to velocity commands.
     fn command(&mut self, twist: Twist) -> Result<(), Fault>;
 
-    /// Calls `take` with each message since the last call: the index of its topic, and its bytes.
+    /// Calls `take` with the topic index and the bytes of each message that arrived since the last call.
     ///
     /// # Errors
     /// Fails if `take` fails, or if several programs publish the odometry.

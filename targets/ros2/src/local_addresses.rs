@@ -1,16 +1,16 @@
-//! The addresses of this computer, one of which may be the only network that the driver uses.
+//! Addresses of this computer: checks the address of the only network that the driver may use.
 
 use std::fs;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 
-/// File with the routes of this computer, among them those to its own addresses.
+/// File that lists the routes of this computer, including those to its own addresses.
 const ROUTES: &str = "/proc/net/fib_trie";
 
-/// Returns the address in `text`, the value of `network`; `None` if it is empty, for all networks.
+/// Returns the address in `text`, the value of the key `network`; `None` if `text` is empty, for all networks.
 ///
 /// # Errors
-/// Returns a sentence with the kind of the address, and the addresses of this computer, if no computer can have it or
-/// the middleware cannot use it.
+/// Returns a sentence with the reason and the addresses of this computer if `text` is no address, no computer can have
+/// the address, or the middleware cannot use it.
 pub(crate) fn read(text: &str) -> Result<Option<Ipv4Addr>, String> {
     if text.is_empty() {
         return Ok(None);
@@ -36,7 +36,7 @@ pub(crate) fn check(address: Ipv4Addr) -> Result<(), String> {
     Routes::of_this_computer().check(address)
 }
 
-/// Returns the sentence about the value `network` of the key, with the reason `why`.
+/// Returns the error message for the value `network` of the key of that name, with the reason `why`.
 fn refusal(network: &str, why: &str, routes: &Routes) -> String {
     let own: Vec<_> = routes.own.iter().map(Ipv4Addr::to_string).collect();
     let has = if own.is_empty() { "none of IPv4".to_owned() } else { own.join(", ") };
@@ -44,11 +44,11 @@ fn refusal(network: &str, why: &str, routes: &Routes) -> String {
     format!("`network` is `{network}`, {why}; this computer has {has}")
 }
 
-/// Addresses among the routes of a computer.
+/// Addresses in the routing table of a computer.
 struct Routes {
-    /// Addresses of its interfaces.
+    /// Addresses of the computer's network interfaces.
     own: Vec<Ipv4Addr>,
-    /// Addresses of broadcast in its networks.
+    /// Broadcast addresses of the computer's networks.
     broadcast: Vec<Ipv4Addr>,
 }
 
@@ -57,7 +57,7 @@ impl Routes {
         Self::of(&fs::read_to_string(ROUTES).unwrap_or_default())
     }
 
-    /// Returns the addresses among the routes in `text`.
+    /// Returns the addresses in `text`, the contents of the file [`ROUTES`].
     fn of(text: &str) -> Self {
         let lines: Vec<_> = text.lines().map(str::trim).collect();
         let of_kind = |kind: &str| {
@@ -74,7 +74,7 @@ impl Routes {
     }
 
     fn check(&self, address: Ipv4Addr) -> Result<(), String> {
-        // Without a list the system knows: it lets a program use its own addresses.
+        // Without a routing table, the system can tell: it lets a program bind only to the computer's own addresses.
         if self.own.contains(&address) || (self.own.is_empty() && UdpSocket::bind((address, 0)).is_ok()) {
             return Ok(());
         }
@@ -106,7 +106,7 @@ mod tests {
         assert_eq!(refused([192, 168, 1, 5]), None);
         for (address, what) in [
             ([203, 0, 113, 9], "no address of this computer"),
-            // The system would let a program use it, and the middleware finds no interface.
+            // The system lets a program bind to this address, but the middleware finds no interface for it.
             ([127, 0, 0, 2], "no address of this computer"),
             ([192, 168, 1, 255], "an address of broadcast"),
         ] {

@@ -1,4 +1,4 @@
-//! ROS 2 messages that the driver sends and reads, with fields in the order of their definitions.
+//! ROS 2 messages that the driver sends and reads. The fields have the order of the message definitions.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Nanoseconds in a second.
 const NANOS: i64 = 1_000_000_000;
 
-/// Declares message types with public fields, which are named as in the definitions of ROS 2.
+/// Declares message types with public fields, named as in the ROS 2 definitions.
 macro_rules! messages {
     ($($(#[$meta:meta])* $name:ident { $($field:ident: $type:ty,)* })*) => {
         $(
@@ -190,7 +190,7 @@ impl<'de> Deserialize<'de> for Covariance {
     }
 }
 
-/// Id of a participant, reader or writer: 16 bytes, which 8 zeros follow up to the distribution Humble.
+/// Id of a participant, reader or writer: 16 bytes, followed by 8 zeros up to the distribution Humble.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Gid {
     /// First 16 bytes of the id.

@@ -1,9 +1,9 @@
-//! Names of topics and types, as ROS 2 and DDS write them.
+//! Conversion of the names of topics and types between ROS 2 and DDS.
 
-/// Returns the absolute name of a topic; a relative name belongs to `namespace`.
+/// Returns the absolute name of a topic; a relative name is placed in `namespace`.
 ///
 /// # Errors
-/// Returns a sentence with the reason if `name` is not a valid topic name.
+/// Returns the reason, as a sentence, if `name` is not a valid topic name.
 pub fn absolute(namespace: &str, name: &str) -> Result<String, String> {
     let whole = match namespace.trim_matches('/') {
         _ if name.starts_with('/') => name.to_owned(),
@@ -18,7 +18,7 @@ pub fn absolute(namespace: &str, name: &str) -> Result<String, String> {
     }
 }
 
-/// Returns `true` if `text` is a namespace, which may be empty and may have a slash at each end.
+/// Returns `true` if `text` is a valid namespace, which may be empty and may have a slash at each end.
 #[must_use]
 pub fn is_namespace(text: &str) -> bool {
     let words = text.strip_prefix('/').unwrap_or(text);
@@ -26,13 +26,13 @@ pub fn is_namespace(text: &str) -> bool {
     words.is_empty() || words.split('/').all(is_word)
 }
 
-/// Returns `true` if `word` may stand between two slashes of a name.
+/// Returns `true` if `word` is valid between two slashes of a name.
 fn is_word(word: &str) -> bool {
     let starts = word.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_');
     starts && word.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')
 }
 
-/// Returns the DDS topic of the ROS topic with this absolute name.
+/// Returns the DDS name of the ROS topic with this absolute name.
 #[must_use]
 pub fn dds_topic(absolute: &str) -> String {
     format!("rt{absolute}")

@@ -1,4 +1,4 @@
-//! The pose and speed that odometry reports, with checks that they are plausible.
+//! The pose and speed that odometry reports, with plausibility checks.
 
 use std::collections::VecDeque;
 
@@ -10,11 +10,11 @@ use crate::messages::{Odometry, Time};
 
 /// Maximum step back in the time of odometry, in nanoseconds; after a larger step the run ends with a fault.
 const BACK: i64 = 1_000_000_000;
-/// Number of stored poses, among which the pose of a scan is found.
+/// Number of stored poses, from which the pose at the time of a scan is chosen.
 const KEPT: usize = 32;
-/// Tolerance of the plausibility check: a robot may move at its maximum speeds times this factor.
+/// Tolerance of the plausibility check: factor by which a robot may exceed its maximum speeds.
 const OVERSHOOT: f64 = 1.5;
-/// Angle by which a heading may jump beyond the possible turn, in radians.
+/// Angle by which the heading may change beyond the maximum turn, in radians.
 const JUMP: f64 = 0.6;
 
 /// A pose with the time of its message.
@@ -42,8 +42,8 @@ impl Odometer {
         Self { poses: VecDeque::new(), velocity: Twist::default(), fastest, jump: config.jump }
     }
 
-    /// Stores a message that arrived `since` seconds after the previous message; returns `false` if it is not newer
-    /// than that.
+    /// Stores a message that arrived `since` seconds after the previous message; returns `false` if its time stamp is
+    /// not newer than the last one.
     ///
     /// # Errors
     /// Fails if the pose is invalid or has jumped, or if the time has gone back.
@@ -54,7 +54,7 @@ impl Odometer {
             if back > BACK && next.stamp != 0 {
                 return Err(Fault::Backwards(back as f64 / 1e9));
             }
-            // Best effort may deliver twice and out of order.
+            // Best-effort delivery may duplicate and reorder messages.
             if next.stamp != 0 && back >= 0 {
                 return Ok(false);
             }
@@ -131,7 +131,8 @@ mod tests {
         Odometer::new(&Configured::read(None).unwrap().config)
     }
 
-    /// A message at this many milliseconds, at `x`, with this heading.
+    /// Returns an odometry message with the time stamp `millis` in milliseconds, the position `x` and the heading
+    /// `theta`.
     fn message(millis: i64, x: f64, theta: f64) -> Odometry {
         let mut message = Odometry::default();
         message.header.stamp = Time::of(millis * 1_000_000);
@@ -166,7 +167,7 @@ mod tests {
         let mut odometer = odometer();
         assert_eq!(odometer.take(&message(0, 0.0, 0.0), 0.1), Ok(true));
         assert_eq!(odometer.take(&message(100, 0.34, 0.0), 0.1), Ok(true));
-        // 0.3 m/s may have driven this way in the time since.
+        // Within this time the robot can have driven this far at 0.3 m/s.
         assert_eq!(odometer.take(&message(2100, 1.5, 0.0), 0.1), Ok(true));
         assert!(matches!(odometer.take(&message(2200, 1.9, 0.0), 0.1), Err(Fault::Jumped { .. })));
         assert!(matches!(odometer.take(&message(2200, 1.5, 1.0), 0.1), Err(Fault::Jumped { .. })));

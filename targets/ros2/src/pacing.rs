@@ -1,11 +1,11 @@
-//! Source of the time of a run: the host's clock, steps of a robot in lockstep, or the clock of a simulation.
+//! Time source of a run: the host's clock, the steps of a robot in lockstep, or the clock of a simulation.
 
 use std::time::Duration;
 
 use mdle_host::{Pace, Time};
 use mdle_serial::Clock;
 
-/// Source of the time of turns.
+/// Time source of turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pacing {
     /// The clock of the host.

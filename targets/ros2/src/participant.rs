@@ -20,13 +20,13 @@ use crate::payload_adapter::PayloadAdapter;
 
 /// Maximum number of messages that a reader stores between two turns.
 const KEPT: i32 = 16;
-/// Maximum number of commands that a subscriber may leave unacknowledged before the next command is refused. At 50 Hz
-/// these are the commands of 20 s, after which a dead program has left the graph.
+/// Maximum number of commands that a subscriber may leave unacknowledged before the next command is rejected. At 50 Hz
+/// this corresponds to 20 s, after which a dead program has left the graph.
 const UNACKNOWLEDGED: i32 = 1000;
-/// Maximum number of states of the plan that a subscriber may leave unacknowledged, and that a late subscriber
-/// receives.
+/// Maximum number of states of the plan that a subscriber may leave unacknowledged; also the number of states that a
+/// late subscriber receives.
 const STATES: i32 = 8;
-/// Maximum time for which a writer waits for space.
+/// Maximum time for which a writer waits for space in its queue.
 const BLOCKING: rustdds::Duration = rustdds::Duration::from_millis(1);
 
 /// A DDS participant.
@@ -46,21 +46,21 @@ pub(crate) struct Writer {
     matched: i32,
 }
 
-/// A message, with the id of its writer.
+/// A received message, with the id of its writer.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Arrival {
     pub(crate) payload: Payload,
     pub(crate) writer: [u8; 16],
 }
 
-/// Delivery of a topic's messages.
+/// Delivery guarantee of a topic's messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Delivery {
     /// Best effort: only the newest message counts, and each message may be lost.
     BestEffort,
     /// Reliable: every message arrives.
     Reliable,
-    /// Reliable and latched: every message arrives, and the last message reaches also later subscribers.
+    /// Reliable and latched: every message arrives, and later subscribers also receive the last messages.
     Latched,
 }
 
@@ -158,15 +158,15 @@ impl Participant {
     }
 }
 
-/// Returns the text of the system's error that `error`, a message of the middleware, contains as Rust prints it for
-/// programmers; without such an error, returns `error`.
+/// Returns the operating system's error text from the middleware's message `error`, which contains it in Rust's debug
+/// format. Returns `error` unchanged if it contains no such text.
 fn plain(error: &str) -> String {
     let code = error.split_once("Os { code: ").and_then(|(_, rest)| rest.split_once(','));
     let code = code.and_then(|(code, _)| code.parse().ok());
     code.map_or_else(|| error.to_owned(), |code| std::io::Error::from_raw_os_error(code).to_string())
 }
 
-/// Returns the fault of a topic that the middleware refused to create.
+/// Returns the fault for a topic that the middleware failed to create.
 fn refused(topic: &str, why: &str) -> Fault {
     Fault::Middleware(format!("`{topic}` cannot be used: {why}"))
 }
@@ -182,7 +182,7 @@ impl Reader {
                     return Some(Arrival { payload: sample.into_value(), writer });
                 }
                 Ok(None) => return None,
-                // Such as a message in another format than CDR, which is passed over.
+                // Skips a message that cannot be read, for example one that is not in CDR format.
                 Err(_) => {}
             }
         }

@@ -1,4 +1,4 @@
-//! Adapter that passes the bytes of messages to and from RustDDS unchanged; other modules decode them.
+//! Adapter that passes encoded messages to and from RustDDS unchanged; other modules decode them.
 
 use std::convert::Infallible;
 
@@ -15,7 +15,7 @@ static ENCODINGS: [RepresentationIdentifier; 2] = [RepresentationIdentifier::CDR
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PayloadAdapter;
 
-/// Decoder that copies the bytes.
+/// Decoder that copies the bytes without decoding them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Copied;
 

@@ -1,4 +1,4 @@
-//! Proposals of configuration entries for topics that are missing, by the topics of the same type on the graph.
+//! Proposes configuration entries for missing topics, based on the topics of the same type on the graph.
 
 use std::collections::BTreeSet;
 
@@ -8,23 +8,23 @@ use crate::graph::{Endpoint, Graph};
 use crate::names::{dds_topic, dds_type, ros_topic};
 use crate::source::Input;
 
-/// Key of the range sensors, which are in a list of tables.
+/// Configuration key of the range sensors, whose value is a list of tables.
 pub(crate) const RANGES: &str = "ranges";
 /// Maximum number of topics in a list.
 const LISTED: usize = 8;
 
-/// A missing topic, with the topics of its types that are on the graph.
+/// A missing topic, with the topics of the same type on the graph.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Missing<'a> {
     key: &'static str,
-    /// `true` if a topic may be proposed because it is the only one of its type.
+    /// `true` if the topic may be proposed without reservation when it is the only one of its type.
     is_telling: bool,
     topic: &'a str,
     candidates: BTreeSet<&'a str>,
 }
 
 impl<'a> Missing<'a> {
-    /// Returns the missing topic `topic`; `None` if one of `endpoints` has this topic.
+    /// Returns `topic` as a missing topic; `None` if one of `endpoints` has it.
     fn among(
         endpoints: &'a [Endpoint],
         topic: &'a str,
@@ -46,8 +46,8 @@ impl<'a> Missing<'a> {
         inside.filter(|namespace| !namespace.is_empty()).collect()
     }
 
-    /// Returns an entry with the topic that is most probably meant, and the others in a comment; `None` if no topic of
-    /// the type is on the graph.
+    /// Returns an entry with the most probable topic, and the other candidates in a comment; `None` if no topic of the
+    /// type is on the graph.
     fn choice(&self) -> Option<String> {
         let last = |topic: &'a str| topic.rsplit('/').next().unwrap_or(topic);
         let mut candidates: Vec<_> = self.candidates.iter().copied().collect();
@@ -68,9 +68,9 @@ impl<'a> Missing<'a> {
 }
 
 impl Graph {
-    /// Returns help with the configuration entries for the missing topics, where the graph has others of the same type;
-    /// empty if there are none. If the graph has all of these topics in one other namespace, the entry is `namespace`,
-    /// unless `config` has names that begin with a slash, which a namespace does not change.
+    /// Returns a help text with configuration entries for the missing topics for which the graph has candidates of the
+    /// same type; empty if there are no candidates. If all missing topics exist in a single other namespace, the entry
+    /// sets `namespace`, unless `config` has absolute names, which a namespace does not change.
     #[must_use]
     pub fn help<'i>(&'i self, inputs: impl Iterator<Item = &'i Input>, commands: &'i str, config: &Config) -> String {
         let of_input =
@@ -94,7 +94,8 @@ impl Graph {
     }
 }
 
-/// Returns the entry of the only namespace that has all topics of `missing`, of which there are several.
+/// Returns an entry that sets the only namespace with all topics of `missing`; `None` if `missing` has fewer than two
+/// topics, or if there is no single such namespace.
 fn namespace(missing: &[Missing<'_>]) -> Option<String> {
     let (first, others) = missing.split_first().filter(|(_, others)| !others.is_empty())?;
     let mut common = first.namespaces();

@@ -1,4 +1,4 @@
-//! The publishers of the odometry, as far as their messages have come.
+//! Detects a second publisher of the odometry from the messages that arrive.
 
 use std::time::Duration;
 
@@ -6,28 +6,28 @@ use crate::fault::Fault;
 use crate::graph::Graph;
 use crate::source::{Input, Source};
 
-/// Minimum time for which the start waits for messages of a second publisher on the graph.
+/// Minimum time for which the search at the start waits for messages of a second publisher on the graph.
 const WATCH: Duration = Duration::from_secs(1);
 
-/// The publishers of a topic from which messages have come.
+/// Publishers of the odometry from which messages have arrived.
 ///
-/// A program that was killed stays on the graph for some time: after a restart of a robot there are
-/// two publishers, of which the first is silent. Two publishers that drive the plan with two poses both send: the first
-/// of them sends again after the second.
+/// A killed program stays on the graph for some time: after a restart of the robot there are two publishers, of which
+/// the first is silent. If instead two programs publish different poses at the same time, the first publisher sends
+/// again after the second.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Publishers {
     /// Publishers before the last one.
     earlier: Vec<[u8; 16]>,
     last: Option<[u8; 16]>,
-    /// `true` if a publisher has sent again after another one.
+    /// `true` if a publisher has sent again after another publisher.
     is_mixed: bool,
 }
 
 impl Publishers {
-    /// Calls `take` for a message of `input` from this publisher.
+    /// Calls `take` for a message of `input` that `publisher` sent.
     ///
     /// # Errors
-    /// Fails if `take` fails, or if a publisher of the odometry has sent again after another one.
+    /// Fails if `take` fails, or if a publisher of the odometry has sent again after another publisher.
     pub(crate) fn pass(
         &mut self,
         input: &Input,
@@ -50,7 +50,8 @@ impl Publishers {
             return Err(several(false));
         }
         take().map_err(|fault| {
-            // Two publishers look like a robot that jumps, or like a clock that goes back.
+            // The poses of two publishers look like a robot that jumps, and their time stamps like a clock that goes
+            // back.
             let is_break = matches!(fault, Fault::Jumped { .. } | Fault::Backwards(_));
             let are_two = is_break && !self.earlier.is_empty() && graph().publishers(input) > 1;
             if are_two { several(true) } else { fault }
@@ -58,12 +59,13 @@ impl Publishers {
     }
 }
 
-/// The time in which a second publisher on the graph has to send before it counts.
+/// Waiting period for messages of a second publisher: the time at which it was first seen on the graph; `None` before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Probation(Option<Duration>);
 
 impl Probation {
-    /// Returns `true` if `input` has one publisher on the graph at the time `now`, or has had several for long enough.
+    /// Returns `true` if `input` has at most one publisher on the graph, or if the waiting time for messages of a
+    /// second one has passed at the time `now`.
     pub(crate) fn is_over(&mut self, input: &Input, graph: &Graph, now: Duration) -> bool {
         if graph.publishers(input) < 2 {
             return true;
@@ -84,14 +86,14 @@ mod tests {
         Input { source, topic: "/odom".to_owned(), kind: KIND, limit: 1 }
     }
 
-    /// A graph with this number of publishers of the odometry.
+    /// Returns a graph with `count` publishers of the odometry.
     fn graph(count: usize) -> Graph {
         let (topic, kind) = (dds_topic("/odom"), dds_type(KIND));
         let endpoint = Endpoint { topic, kind, is_reliable: true, mismatch: None };
         Graph { readers: Vec::new(), writers: vec![endpoint; count] }
     }
 
-    /// Passes messages of these publishers, of which the last one causes `fault`.
+    /// Passes messages of the publishers `ids` in this order; the last message causes `fault`.
     fn passed(ids: &[u8], source: Source, fault: Option<Fault>) -> Result<(), Fault> {
         let (input, mut publishers) = (input(source), Publishers::default());
         let pass = |publishers: &mut Publishers, id: u8, fault: Option<Fault>| {

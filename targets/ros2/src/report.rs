@@ -1,4 +1,4 @@
-//! The state of the plan as messages that ROS 2 tools can show.
+//! Publishes the state of the plan in messages that ROS 2 tools can show.
 
 use mdle_host::{Ended, PlanPosition};
 use serde_json::json;
@@ -15,10 +15,10 @@ pub struct StateMessages {
     pub diagnostics: Payload,
 }
 
-/// The state of a plan.
+/// State of a plan, as published.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PlanState {
-    /// The word `running`, `over` or `stopped`.
+    /// Status of the plan: `running`, `over` or `stopped`.
     status: &'static str,
     /// Time of the run, in seconds.
     t: String,

@@ -1,4 +1,4 @@
-//! Conversion of a laser scan to ranges in the sixteen directions of a robot.
+//! Converts a laser scan to ranges in the sixteen directions of a robot.
 
 use mdle_runtime::{Meters, Mount, Pose, Radians, SONARS, SonarId};
 
@@ -7,22 +7,22 @@ use crate::messages::LaserScan;
 
 /// Numbers of the virtual sonars that point ahead.
 const AHEAD: [usize; 3] = [SONARS - 1, 0, 1];
-/// Number in the place of a direction ahead that has a ray.
+/// Marks a direction ahead for which a ray has been found.
 const SEEN: usize = SONARS;
 
-/// Content of one direction in a scan.
+/// Result of a scan in one direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Direction {
     /// No ray in this direction was valid.
     #[default]
     Unknown,
-    /// All valid rays in this direction met nothing.
+    /// All valid rays in this direction met no obstacle.
     Free,
-    /// A ray in this direction met an obstacle; the nearest counts.
+    /// At least one ray in this direction met an obstacle; the nearest obstacle counts.
     Echo {
-        /// Range of the obstacle from the ring of virtual sonars, in metres.
+        /// Distance of the obstacle from the ring of virtual sonars, in metres.
         range: Meters,
-        /// Bearing of the obstacle, as the mount of a virtual sonar that points at it.
+        /// Mount of a virtual sonar that points at the obstacle.
         mount: Mount,
     },
 }
@@ -45,7 +45,7 @@ impl Scanner {
         Self { mount: Pose { x, y, theta }, ring_radius, zero_is_free }
     }
 
-    /// Returns the content of each of the sixteen directions of `scan`.
+    /// Returns the result of `scan` in each of the sixteen directions.
     #[must_use]
     pub fn directions(&self, scan: &LaserScan) -> [Direction; SONARS] {
         let mut directions = [Direction::Unknown; SONARS];
@@ -79,7 +79,7 @@ impl Scanner {
         AHEAD.iter().any(|sonar| directions.get(*sonar).is_some_and(|direction| *direction != Direction::Unknown))
     }
 
-    /// Returns the positions of obstacles relative to the body, in metres ahead of its centre and to the left of it.
+    /// Returns the positions of obstacles in the body's frame, in metres ahead of and to the left of the centre.
     pub fn obstacles<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (f64, f64)> + 's {
         self.rays(scan).filter_map(|(angle, range)| Some(self.place(angle, range?)))
     }
@@ -87,7 +87,7 @@ impl Scanner {
     /// Checks that `scan` has rays, valid or not, in the three directions ahead.
     ///
     /// # Errors
-    /// Returns the reason why a direction has no ray, as the end of a sentence about the scan.
+    /// Returns the reason, as the end of a sentence about the scan, if a direction has no ray.
     pub fn looks_ahead(&self, scan: &LaserScan) -> Result<(), String> {
         let mut missing = AHEAD;
         for number in 0..scan.ranges.len() {
@@ -119,19 +119,19 @@ impl Scanner {
         })
     }
 
-    /// Returns the angle on the body of the ray with this number.
+    /// Returns the angle of the ray with this number in the body's frame.
     fn angle(&self, scan: &LaserScan, number: usize) -> Radians {
         Radians(self.mount.theta.0 + f64::from(scan.angle_min) + f64::from(scan.angle_increment) * number as f64)
     }
 
-    /// Returns the position, in metres relative to the body, of an obstacle at this angle and range.
+    /// Returns the position, in metres in the body's frame, of an obstacle at this angle and range.
     fn place(&self, angle: Radians, range: f64) -> (f64, f64) {
         let (sin, cos) = libm::sincos(angle.0);
         (self.mount.x.0 + range * cos, self.mount.y.0 + range * sin)
     }
 
-    /// Returns the valid rays of `scan`: their angle on the body, and their range in metres; `None` for a ray that met
-    /// nothing.
+    /// Returns the valid rays of `scan`: the angle in the body's frame, and the range in metres or `None` if the ray
+    /// met no obstacle.
     fn rays<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (Radians, Option<f64>)> + 's {
         let (least, most) = (f64::from(scan.range_min), f64::from(scan.range_max));
         scan.ranges.iter().enumerate().filter_map(move |(number, range)| {
@@ -157,7 +157,8 @@ mod tests {
     use super::*;
     use crate::config::Configured;
 
-    /// A scanner in the middle of a ring without a radius.
+    /// Returns a scanner at the centre of the body, with a ring of virtual sonars without a radius; `change` adapts the
+    /// configuration.
     fn scanner(change: impl Fn(&mut Config)) -> Scanner {
         let mut config = Configured::read(None).unwrap().config;
         config.ring_radius = 0.0;
@@ -165,7 +166,7 @@ mod tests {
         Scanner::of(&config)
     }
 
-    /// A scan of these ranges all round, from the back counter-clockwise.
+    /// Returns a scan with these ranges at equal angles, counter-clockwise from the back.
     fn scan(ranges: Vec<f32>) -> LaserScan {
         let angle_increment = (2.0 * PI / ranges.len() as f64) as f32;
         let (angle_min, range_min, range_max) = (-PI as f32, 0.1, 10.0);
@@ -190,7 +191,7 @@ mod tests {
         assert_eq!(looks(0.0, 0), Err("it has no rays".to_owned()));
         let coarse = "its rays are 45.0° apart, and each of the three directions ahead is 22.5° wide";
         assert_eq!(looks(0.0, 8), Err(coarse.to_owned()));
-        // Half a circle of which the robot sees what is behind it.
+        // A half circle that covers only the area behind the robot.
         let behind = "its rays reach from -270° to -91° on the body, and the three directions ahead from -34° to 34°; \
                       see `scan-yaw`";
         let half = LaserScan { angle_increment: (PI / 360.0) as f32, ..scan(vec![1.0; 360]) };
@@ -207,11 +208,11 @@ mod tests {
     #[test]
     fn each_direction_has_its_nearest_valid_ray() {
         let mut rays = vec![f32::INFINITY; 360];
-        // Two rays of direction 4, which is left, and one beyond its edge; angles count from the back.
+        // Two rays of direction 4 (left), and one just outside it; angles count from the back.
         (rays[180 + 90], rays[180 + 95], rays[180 + 78]) = (3.0, 2.0, 1.0);
-        // Direction 8 looks back, over the end of the list.
+        // Direction 8 (back) includes both ends of the list.
         (rays[0], rays[359]) = (5.0, 4.0);
-        // Direction 12 has only rays that are none.
+        // Direction 12 has only invalid rays.
         for ray in &mut rays[180 - 101..180 - 78] {
             *ray = f32::NAN;
         }
@@ -250,7 +251,7 @@ mod tests {
         assert_eq!(ahead[0], "2.50");
         let ring = ranges(scanner(|config| config.ring_radius = 0.2).directions(&scan(rays.clone())));
         assert_eq!(ring[0], "1.80");
-        // Upside down, angles count clockwise.
+        // If the scanner is mounted upside down, angles count clockwise.
         let mut left = scan(vec![f32::INFINITY; 360]);
         (left.angle_min, left.angle_increment) = (-left.angle_min, -left.angle_increment);
         left.ranges[90] = 2.0;

@@ -1,4 +1,4 @@
-//! The search for the robot's topics at the start.
+//! Searches for the robot's topics at the start of a run.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -19,16 +19,16 @@ use crate::sensing::Sensing;
 use crate::source::{Input, Source};
 use crate::stamp::ros_now;
 
-/// Time between two checks of the graph for topics.
+/// Interval between two checks of the graph for topics.
 const GRAPH: Duration = Duration::from_millis(50);
-/// Minimum time without a message of a topic that has a publisher, after which the publisher does not seem to know this
-/// participant.
+/// Minimum time without a message from a publisher on the graph, after which that publisher does not appear to have
+/// found this participant.
 const DEAF: Duration = Duration::from_secs(3);
 
 /// Minimum time for which all messages of a topic are rejected before the run ends.
 const REJECTED: Duration = Duration::from_secs(1);
 
-/// The time since when a condition has held without interruption.
+/// Start of the period in which a condition has held without interruption; `None` if it does not hold.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lasting(Option<Duration>);
 
@@ -45,17 +45,18 @@ impl Lasting {
 pub(crate) struct Search<'s> {
     pub(crate) config: &'s Config,
     pub(crate) request: &'s StopRequest,
-    /// Moment at which connecting to the robot began.
+    /// Time at which connecting to the robot began.
     pub(crate) begun: Moment,
 }
 
 impl Search<'_> {
     /// Waits until all topics of the robot have been found, and returns the writer of velocity commands. Returns `None`
-    /// if `may_rejoin` is `true` and a topic has a publisher of which no message comes.
+    /// if `may_rejoin` is `true` and a publisher of a topic sends no message.
     ///
-    /// RustDDS sends to an address of this computer's loopback interface only after it has received a datagram of the
-    /// participant itself. A participant that was first announced in a datagram of another participant of its program
-    /// is never answered: it learns of no reader of the driver. A new participant of the driver is announced anew.
+    /// RustDDS sends to an address of this computer's loopback interface only after it has received a datagram from
+    /// that participant itself. If the participant was first announced in a datagram of another participant of its
+    /// program, RustDDS never answers it, and the participant learns of no reader of the driver. A new participant of
+    /// the driver is announced again.
     ///
     /// # Errors
     /// Fails if topics are missing, or if the middleware does not work.
@@ -119,14 +120,14 @@ impl Search<'_> {
             }
             let patience = patience(sensing, &graph);
             let lasts = silence.time(patience.is_some(), passed);
-            // A new participant needs time to find what this participant has found.
+            // A new participant needs time to find the topics that this participant has found.
             if may_rejoin && patience.is_some_and(|patience| lasts > patience) && passed + DEAF < limit {
                 return Ok(None);
             }
         }
     }
 
-    /// Returns the fault of topics that were not found in time.
+    /// Returns the fault for topics that were not found in time.
     fn fault(&self, sensing: &Sensing, graph: &Graph, mut missing: Vec<String>, topic: &str, is_heard: bool) -> Fault {
         if !is_heard {
             missing.insert(0, graph.about_commands(topic, self.config.stamped));
@@ -135,7 +136,7 @@ impl Search<'_> {
         Fault::Missing(format!("{}{help}", graph.about_missing(&missing, self.config)))
     }
 
-    /// Receives messages for a short time.
+    /// Receives messages for the time [`GRAPH`].
     fn listen(
         &self,
         participant: &Participant,
@@ -159,7 +160,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns a sentence about each topic that the plan cannot begin without.
+/// Returns a sentence for each missing topic without which the plan cannot begin.
 fn missing(sensing: &Sensing, graph: &Graph) -> Vec<String> {
     let mut missing: Vec<_> = sensing.awaited().map(|(input, why)| graph.about_input(input, why)).collect();
     let is_awaited = |input: &Input| sensing.awaited().any(|(awaited, _)| awaited == input);
@@ -173,13 +174,14 @@ fn limit_of(input: &Input) -> Duration {
     Duration::from_millis(input.limit)
 }
 
-/// Returns the time to wait for the first message of a topic that has a publisher; `None` if there is no such topic.
+/// Returns the maximum time to wait for the first message of a topic that has a publisher; `None` if no such topic is
+/// silent.
 fn patience(sensing: &Sensing, graph: &Graph) -> Option<Duration> {
     let silent = sensing.awaited().filter(|(input, left_out)| left_out.is_empty() && graph.is_offered(input));
     silent.map(|(input, _)| limit_of(input).max(DEAF)).min()
 }
 
-/// A function that receives a message: its topic with its index, its bytes, and the id of its publisher.
+/// A function that receives a message: its topic, the topic's index, its bytes, and the id of its publisher.
 type Take<'a> = dyn FnMut(&Input, usize, &Payload, [u8; 16]) -> Result<(), Fault> + 'a;
 
 /// Calls `take` with each message that has arrived.

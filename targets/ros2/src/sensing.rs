@@ -1,4 +1,4 @@
-//! The last messages of all topics, combined to the output of a turn.
+//! Combines the latest messages of all topics into the output of a turn.
 
 #[cfg(test)]
 mod tests;
@@ -22,19 +22,19 @@ use crate::odometer::Odometer;
 use crate::scan::{Direction, Scanner, sonar_at};
 use crate::source::{Input, Source, has_variance, inputs};
 
-/// A topic, with the last message that was accepted.
+/// A topic, with information about its last accepted message.
 #[derive(Debug, Clone)]
 struct Seen {
     input: Input,
-    /// Time at which the last message was accepted, for the message's age; `None` before the first message.
+    /// Time at which the last message was accepted, from which its age is computed; `None` before the first message.
     at: Option<Duration>,
     /// Time stamp of the last accepted message, in nanoseconds.
     stamp: i64,
-    /// Reason why the last message was rejected; empty if it was accepted or none has arrived.
+    /// Reason why the last message was rejected; empty if it was accepted or no message has arrived.
     left_out: String,
 }
 
-/// The data that all topics of a robot have reported.
+/// Data that all topics of a robot have reported.
 #[derive(Debug, Clone)]
 pub struct Sensing {
     config: Config,
@@ -42,14 +42,14 @@ pub struct Sensing {
     scanner: Scanner,
     seen: Vec<Seen>,
     odometer: Odometer,
-    /// Time of the exchange that brought the last odometry.
+    /// Time of the exchange that received the last odometry.
     positioned: Nanos,
     pings: [Pings; SONARS],
-    /// Time at which each direction was last known, for the age of its ping.
+    /// Time of the last valid ray in each direction, from which the age of its ping is computed.
     known: [Duration; SONARS],
     switches: u32,
     supply: Supply,
-    /// Last time of `/clock`, in nanoseconds.
+    /// Latest time of `/clock`, in nanoseconds.
     clock: i64,
     /// Recorded paths that the plan can replay.
     pub paths: PathStore,
@@ -59,7 +59,7 @@ impl Sensing {
     /// Returns the data of a robot that has sent no message yet.
     ///
     /// # Errors
-    /// Returns a sentence if the configuration has an invalid topic name.
+    /// Returns the reason, as a sentence, if the configuration has an invalid topic name.
     pub fn new(config: &Config) -> Result<Self, String> {
         let seen = |input| Seen { input, at: None, stamp: 0, left_out: String::new() };
         Ok(Self {
@@ -78,16 +78,16 @@ impl Sensing {
         })
     }
 
-    /// Stores a message of the topic with this index. `now` is the time for the age of messages, and `at` that of the
-    /// output.
+    /// Stores a message of the topic with this index. The age of messages is computed from `now`; `at` is the time of
+    /// the output.
     ///
-    /// A message that cannot be read is rejected: if no other message follows, the topic becomes stale.
+    /// A message that cannot be read is rejected; without further messages, the topic's data become stale.
     ///
     /// # Errors
     /// Fails if the odometry is invalid, has jumped, or has gone back in time.
     pub fn take(&mut self, index: usize, payload: &Payload, now: Duration, at: Nanos) -> Result<(), Fault> {
         let Some(seen) = self.seen.get(index) else { return Ok(()) };
-        // Messages that come at once with the first `/clock` are as new as it is.
+        // Messages that arrive together with the first `/clock` are as recent as its time.
         let now = now.max(self.simulated());
         let (source, since) = (seen.input.source, seen.at.map_or(now, |at| now.saturating_sub(at)));
         let taken = match source {
@@ -173,7 +173,7 @@ impl Sensing {
         if is_echo || is_free { Ok(range) } else { Err(format!("its range is {}", range.range)) }
     }
 
-    /// Stores a valid range. A range beyond the sensor's maximum, or an infinite one, means that nothing echoed.
+    /// Stores a valid range. An infinite range, or one beyond the sensor's maximum, means that nothing echoed.
     fn take_range(&mut self, number: usize, message: &Range, at: Nanos) -> i64 {
         let pose = self.pose_of(&message.header);
         if let Some(sensor) = self.config.ranges.0.get(number) {
@@ -212,15 +212,15 @@ impl Sensing {
         self.seen.iter().map(|seen| &seen.input)
     }
 
-    /// Returns the topics that lack a first message, each with the reason why a message was rejected. Topics that
-    /// report changes only are left out.
+    /// Returns the topics that lack a first valid message, each with the reason why the last message was rejected. A
+    /// topic that reports only changes is omitted unless its message was rejected.
     pub fn awaited(&self) -> impl Iterator<Item = (&Input, &str)> {
         let may_wait = |seen: &Seen| reports_changes(&seen.input) && seen.left_out.is_empty();
         let awaited = self.seen.iter().filter(move |seen| seen.at.is_none() && !may_wait(seen));
         awaited.map(|seen| (&seen.input, seen.left_out.as_str()))
     }
 
-    /// Returns two time stamps in nanoseconds: of the last odometry, and of the oldest topic among the scan and the
+    /// Returns two time stamps in nanoseconds: of the last odometry, and of the oldest message among the scan and the
     /// ranges.
     #[must_use]
     pub fn stamps(&self) -> (i64, i64) {
@@ -281,8 +281,8 @@ impl Sensing {
     }
 }
 
-/// Returns `true` if a topic reports changes only: the plan may begin once the topic has a publisher, without a
-/// message.
+/// Returns `true` if a topic reports only changes: once it has a publisher, the plan may begin without a message of
+/// this topic.
 fn reports_changes(input: &Input) -> bool {
     match input.source {
         Source::Bumper | Source::Battery => input.limit == 0,

@@ -1,4 +1,4 @@
-//! The topics that a configuration reads, with their types.
+//! The topics that the driver reads according to the configuration, with their types.
 
 use crate::choices::{BumperSource, Distribution};
 use crate::config::{Config, has_topic};
@@ -22,8 +22,8 @@ pub enum Source {
 }
 
 impl Source {
-    /// Returns the configuration key that names the topic, and `true` if the only topic of its type may be proposed,
-    /// which a bumper's may not, as its type is common. Returns `None` for the clock, whose name is fixed.
+    /// Returns the configuration key that names the topic, and `true` if the only topic of its type may be proposed. A
+    /// bumper topic may not be proposed, because its type is common. Returns `None` for the clock, whose name is fixed.
     #[must_use]
     pub const fn key(self) -> Option<(&'static str, bool)> {
         match self {
@@ -62,7 +62,7 @@ pub fn inputs(config: &Config) -> Result<Vec<Input>, String> {
     if config.use_sim_time {
         add(Source::Clock, "/clock", "rosgraph_msgs/msg/Clock", 0)?;
     }
-    // Before the scan, whose poses it gives.
+    // The odometry comes before the scan, because it provides the pose of the scan.
     add(Source::Odometry, &config.odom, "nav_msgs/msg/Odometry", config.stale_odom)?;
     if has_topic(config.bumper_type) {
         let kind = match config.bumper_type {

@@ -1,4 +1,4 @@
-//! The time stamp of ROS messages without a simulation: the system's time.
+//! Time stamps of ROS messages outside a simulation: the system's time.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 

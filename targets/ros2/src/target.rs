@@ -94,14 +94,14 @@ impl mdle_host::Target for Target {
         }
         let (link, sensing) = DdsLink::connect(&config, pacing, request, begun)?;
         for sentence in link.warnings() {
-            // Without standard error the plan runs as well.
+            // The plan can run without standard error.
             let _ = writeln!(io::stderr(), "warning: {sentence}");
         }
         Ok(Ros2::new(config, link, sensing, pacing, request.clone(), begun))
     }
 }
 
-/// Returns the file of the option `--config`, if the option is present.
+/// Returns the file name given with `--config`; `None` if the option is absent.
 fn config(matches: &ArgMatches) -> Option<&Path> {
     matches.get_one::<PathBuf>("config").map(PathBuf::as_path)
 }
@@ -111,7 +111,7 @@ fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {
     Configured::read(config(matches)).map_err(Refusal::Usage)
 }
 
-/// Returns the source of the time of turns that the options select.
+/// Returns the time source of turns that the options select.
 fn pacing(matches: &ArgMatches, period: Duration) -> Result<Pacing, Refusal> {
     if matches.get_flag("lockstep") {
         return Ok(Pacing::Lockstep(period));

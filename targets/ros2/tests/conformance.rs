@@ -1,5 +1,6 @@
-//! The driver conforms: on a body whose odometry, scan, bumper and battery are the bytes of their topics, it does what
-//! its capabilities require of any robot. Only the middleware is left out, which `test_tour.py` has.
+//! Conformance test of the driver: with a body whose odometry, scan, bumper and battery arrive as the bytes of their
+//! topics, the driver does what its capabilities require of any robot. The middleware is not included; `test_tour.py`
+//! tests it.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::cell::RefCell;
@@ -22,33 +23,33 @@ use mdle_simulator::{Place, Walls, World};
 
 /// Number of rays of a scan.
 const RAYS: u32 = 720;
-/// Range of the scanner, in metres.
+/// Maximum range of the scanner, in metres.
 const REACH: f64 = 12.0;
-/// Time of a step of the body.
+/// Time step of the body.
 const STEP: Duration = Duration::from_millis(10);
 /// Time without a command after which the base stops itself.
 const WATCHDOG: Duration = Duration::from_millis(500);
 
-/// The robot behind the topics: a round body that moves as its last command says, until a wall stops it.
+/// The robot behind the topics: a round body that moves as last commanded, until a wall stops it.
 struct Base {
     config: Config,
     walls: Walls,
-    /// Pose of the body, in the axes of the room.
+    /// Pose of the body in the room.
     pose: Pose,
-    /// Pose at which the odometry began.
+    /// Pose at which the odometry is zero.
     began: Pose,
     velocity: Twist,
     is_pressed: bool,
     battery: BatteryState,
     time: Duration,
-    /// Time without a command.
+    /// Time since the last command.
     unheard: Duration,
-    /// Messages that nobody has taken: the number of the topic, and the bytes.
+    /// Messages that have not been received: the number of the topic, and the bytes.
     sent: Vec<(usize, Payload)>,
 }
 
 impl Base {
-    /// Moves the body for a turn, and publishes what it senses.
+    /// Moves the body for a turn, and publishes its sensor data.
     fn pass(&mut self) {
         let period = Duration::from_nanos(alphabet::PERIOD.0);
         let mut passed = Duration::ZERO;
@@ -76,9 +77,9 @@ impl Base {
         }
     }
 
-    /// Returns the header of a message of now.
+    /// Returns a header with the current time.
     fn header(&self) -> Header {
-        // A clock that is not at its beginning, as that of any robot.
+        // The clock does not begin at zero, as on a real robot.
         Header { stamp: Time::of(1_000_000_000_000 + self.time.as_nanos() as i64), frame_id: String::new() }
     }
 
@@ -88,7 +89,7 @@ impl Base {
         let (sin, cos) = libm::sincos(self.began.theta.0);
         let pose = &mut message.pose.pose;
         (pose.position.x, pose.position.y) = (x * cos + y * sin, y * cos - x * sin);
-        // As all quaternions, it knows no full turns.
+        // A quaternion does not count full turns.
         let heading = Radians(self.pose.theta.0 - self.began.theta.0).wrapped().0;
         (pose.orientation.z, pose.orientation.w) = libm::sincos(heading / 2.0);
         let twist = &mut message.twist.twist;
@@ -129,7 +130,7 @@ impl Base {
     }
 }
 
-/// The link to the base, without a middleware.
+/// A link to the base without middleware.
 struct Wire(Rc<RefCell<Base>>);
 
 impl Link for Wire {
@@ -153,7 +154,7 @@ impl Link for Wire {
     fn publish(&mut self, _messages: StateMessages) {}
 }
 
-/// Puts a base into rooms, and a driver before it.
+/// Stage of the conformance suite: places a base in a room and connects a driver to it.
 struct Floor {
     config: Config,
     base: Option<Rc<RefCell<Base>>>,
@@ -208,7 +209,7 @@ impl Stage for Floor {
     }
 }
 
-/// A configuration with all capabilities, of a robot as fast as plans may ask for.
+/// Returns a configuration with all capabilities, for a robot that is as fast as plans may request.
 fn config() -> Config {
     let mut config = Configured::read(None).unwrap().config;
     (config.fastest, config.fastest_turn) = (2.0, 6.0);

@@ -1,4 +1,4 @@
-//! Checks of values of a configuration that are valid each by itself but not together.
+//! Checks of configuration values that are valid alone but not in combination.
 
 use mdle_serial::shortened;
 
@@ -9,7 +9,7 @@ use crate::names::is_namespace;
 use crate::proposals::RANGES;
 
 impl Config {
-    /// Checks the conditions that the ranges of single values cannot express.
+    /// Checks the conditions that the range of a single value cannot express.
     pub(super) fn check(&self) -> Result<(), String> {
         local_addresses::read(&self.network)?;
         self.check_topics()?;
@@ -19,7 +19,7 @@ impl Config {
         self.check_body()
     }
 
-    /// Checks that the body fits into its circle.
+    /// Checks that the body fits into the circle of `body_radius`.
     fn check_body(&self) -> Result<(), String> {
         let Self { body_radius, half_length, half_width, .. } = self;
         for (key, half) in [("half-length", half_length), ("half-width", half_width)] {
@@ -33,7 +33,7 @@ impl Config {
         Ok(())
     }
 
-    /// Checks that all topics have names, and each a name of its own.
+    /// Checks that every topic has a valid name and that no two topics have the same name.
     fn check_topics(&self) -> Result<(), String> {
         if !is_namespace(&self.namespace) {
             return Err(format!(
@@ -58,13 +58,13 @@ impl Config {
         Ok(())
     }
 
-    /// Returns the topics in use by the keys that name them.
+    /// Returns the topics in use, each with the configuration key that names it.
     fn topics(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let published = [("state", self.state.as_str()), ("diagnostics", self.diagnostics.as_str())];
         self.robot_topics().chain(published.into_iter().filter(|(_, topic)| !topic.is_empty()))
     }
 
-    /// Returns the topics in use that a robot has to have, by the keys that name them.
+    /// Returns the topics in use that the robot provides, each with the configuration key that names it.
     pub(crate) fn robot_topics(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let optional = [("scan", &self.scan), ("battery", &self.battery)];
         let optional = optional.into_iter().filter(|(_, topic)| !topic.is_empty());
@@ -75,7 +75,7 @@ impl Config {
     }
 }
 
-/// Returns the sentence about a key that needs a topic and is empty.
+/// Returns the error message for a key that requires a topic and is empty.
 fn empty(key: &str) -> String {
     match key {
         "bumper" => "`bumper` is empty: write the topic that `bumper-type` needs, as in `bumper = \"bumper\"`, or \

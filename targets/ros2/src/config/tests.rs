@@ -1,4 +1,4 @@
-//! Configurations as they are read, printed and refused.
+//! Tests that configurations are read, printed and rejected.
 
 use std::fs;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::*;
 use crate::capabilities::Capabilities;
 
-/// Writes a configuration file, of this name.
+/// Writes a configuration file with this name and text.
 fn file(name: &str, text: &str) -> PathBuf {
     let path = std::env::temp_dir().join(format!("mdle-ros2-{}-{name}.toml", std::process::id()));
     fs::write(&path, text).unwrap();
@@ -32,7 +32,7 @@ fn a_domain_of_the_environment_is_a_number() {
     }
 }
 
-/// Returns the configurations of the book.
+/// Returns the example configurations of the book.
 fn examples() -> Vec<(&'static str, &'static str)> {
     let book = include_str!("../../../../docs/src/ros2.md");
     let blocks = book.split("```toml,").skip(1);
@@ -54,7 +54,7 @@ fn the_examples_of_the_book_are_read() {
 fn what_is_printed_is_read_again() {
     for (name, text) in examples().into_iter().chain([("ranges", "ranges = [{ topic = \"a\", x = 0.1, yaw = -1.5 }]")])
     {
-        // The other test of these names runs at the same time.
+        // Another test uses files with the plain names at the same time.
         let path = file(&format!("{name}-printed"), text);
         let first = Configured::read(Some(&path)).unwrap();
         assert_eq!(read(&format!("{name}-again"), &first.to_string()), Ok(first.config), "{name}");

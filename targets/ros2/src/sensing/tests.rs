@@ -1,4 +1,4 @@
-//! Messages of topics, and the outputs and faults that they make.
+//! Tests the outputs and faults that messages of the topics cause.
 
 use std::f64::consts::PI;
 
@@ -10,7 +10,7 @@ use crate::choices::{Distribution, RangeSensor, RangeSensors};
 use crate::config::Configured;
 use crate::messages::{ClockMessage, Time};
 
-/// A robot, and the time of the host in milliseconds.
+/// Sensing of a robot, with the time of the host in milliseconds.
 struct Robot {
     sensing: Sensing,
     now: u64,
@@ -23,14 +23,14 @@ impl Robot {
         Self { sensing: Sensing::new(&config).unwrap(), now: 0 }
     }
 
-    /// Takes a message of a topic.
+    /// Passes a message of a topic to the robot's sensing.
     fn take<T: Serialize>(&mut self, source: Source, message: &T) -> Result<(), Fault> {
         let index = self.sensing.inputs().position(|input| input.source == source).unwrap();
         let (now, at) = (Duration::from_millis(self.now), Nanos(self.now * 1_000_000));
         self.sensing.take(index, &Payload::of(message).unwrap(), now, at)
     }
 
-    /// Takes odometry of this time, at `x`.
+    /// Passes odometry with the current time and the position `x`.
     fn odometry(&mut self, x: f64) -> Result<(), Fault> {
         let mut message = Odometry::default();
         message.header.stamp = Time::of(1_000_000_000 + self.now as i64 * 1_000_000);
@@ -39,7 +39,7 @@ impl Robot {
         self.take(Source::Odometry, &message)
     }
 
-    /// Takes a scan whose rays all have this range.
+    /// Passes a scan whose rays all have this range.
     fn scan(&mut self, range: f32) -> Result<(), Fault> {
         let (angle_min, angle_increment, range_max) = (-PI as f32, (PI / 180.0) as f32, 10.0);
         let ranges = vec![range; 360];
@@ -77,7 +77,7 @@ fn a_silent_topic_is_stale_after_its_limit() {
     robot.scan(2.0).unwrap();
     assert_eq!(robot.sensed().data_age, Nanos::ZERO);
     robot.now = 500;
-    // A scan alone does not tell where the robot is.
+    // A scan does not update the robot's pose.
     robot.scan(2.0).unwrap();
     assert_eq!((robot.check(), robot.sensed().data_age), (Ok(()), Nanos(500_000_000)));
     robot.now = 501;
