@@ -1,4 +1,4 @@
-//! Runs the lab tour on the simulated robot without mdlec; with the option `--panic-at`, the robot breaks down.
+//! Runs the lab tour on the simulated robot without mdlec; with the option `--panic-at`, the robot's driver panics.
 //!
 //! `cargo run -p mdle-sim --example tour -- --watch --speed 10`. The tests of this package run it as a program.
 
@@ -19,19 +19,19 @@ fn main() -> ExitCode {
     run::<Fragile, _>("LabTour", plan::Tour::new)
 }
 
-/// The simulated robot as a target, with an additional option.
+/// The simulated robot as a target with an additional option.
 struct Fragile;
 
-/// A robot, and the number of exchanges before it breaks down.
+/// A robot, and the number of exchanges until its driver panics; `None` if it does not panic.
 struct Breaking {
     robot: Observed,
     left: Option<u64>,
 }
 
-/// The simulator's functions for the observer of a run and for several runs.
+/// The simulator's functions for the observer of a run and for batches.
 const SIM: Option<Observation<Observed>> = Sim::OBSERVATION;
 
-/// Returns the simulator's runs, with robots that may break down.
+/// Returns the simulator's batch of runs, with robots whose drivers may panic.
 fn batch(matches: &ArgMatches, period: Duration) -> SeveralRuns<Breaking> {
     let batch = SIM.map_or(Ok(None), |sim| (sim.batch)(matches, period))?;
     let left = matches.get_one("panic-at").copied();

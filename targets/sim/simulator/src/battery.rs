@@ -1,17 +1,17 @@
-//! The battery: driving and time discharge it, a charger charges it, and its voltage falls with its charge.
+//! The battery: driving and standby discharge it, a charger charges it, and its voltage falls with its charge.
 
 use mdle_runtime::{Supply, Volts};
 
 /// A battery and its consumers, in watts, joules and volts.
 ///
-/// The documents on the robots give no figures, so the figures are assumptions: a pair of lead-acid batteries
-/// that suits the size of the robot, and the power of a computer with sonars. The energy per metre is that of
-/// rolling friction (a twentieth of the weight), with motors of 30 % efficiency.
+/// The documents on the robots give no figures, so the figures are assumptions: a pair of lead-acid batteries that
+/// suits the size of the robot, and the power of a computer with sonars. The energy per metre assumes rolling friction
+/// of a twentieth of the weight and motors of 30 % efficiency.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pack {
     /// Energy of the full battery, in joules.
     pub(crate) capacity: f64,
-    /// Power that is always used, in watts.
+    /// Power that is always consumed, in watts.
     pub(crate) standby: f64,
     /// Energy per metre that a wheel rolls, in joules; the mean of both wheels counts.
     pub(crate) metre: f64,
@@ -21,19 +21,19 @@ pub(crate) struct Pack {
     pub(crate) cells: f64,
 }
 
-/// Joules of a watt-hour.
+/// Number of joules in a watt-hour.
 const WATT_HOUR: f64 = 3600.0;
-/// Voltages of a cell at rest: empty, full, and the limit below which it has to be charged, which is 10.8 V for
-/// a battery of six cells.
+/// Voltages of a cell at rest: empty, full, and the limit below which it has to be charged (10.8 V for a battery of six
+/// cells).
 const EMPTY: f64 = 1.75;
 const FULL: f64 = 2.12;
 const LOW: f64 = 1.8;
 
 impl Pack {
-    /// Pack of a robot of 25 kg: 12 V, 36 Ah.
+    /// Battery of a robot of 25 kg: 12 V, 36 Ah.
     pub(crate) const SCOUT: Self =
         Self { capacity: 432.0 * WATT_HOUR, standby: 30.0, metre: 41.0, charger: 120.0, cells: 6.0 };
-    /// Pack of a robot of 40 kg: 24 V, 30 Ah.
+    /// Battery of a robot of 40 kg: 24 V, 30 Ah.
     pub(crate) const ATRV: Self =
         Self { capacity: 720.0 * WATT_HOUR, standby: 40.0, metre: 65.0, charger: 200.0, cells: 12.0 };
 }
@@ -42,7 +42,7 @@ impl Pack {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Battery {
     pack: Pack,
-    /// Charge from 0, empty, to 1, full.
+    /// Charge, from 0 (empty) to 1 (full).
     charge: f64,
 }
 
@@ -57,8 +57,8 @@ impl Battery {
         self.charge = charge.clamp(0.0, 1.0);
     }
 
-    /// Updates the charge after `seconds` in which the wheels rolled `rolled` metres; `is_plugged` is `true` on
-    /// the charger.
+    /// Updates the charge after `seconds` in which the wheels rolled `rolled` metres; `is_plugged` is `true` on the
+    /// charger.
     pub(crate) fn passed(&mut self, seconds: f64, rolled: f64, is_plugged: bool) {
         let Pack { capacity, standby, metre, charger, .. } = self.pack;
         let given = if is_plugged { charger } else { 0.0 };

@@ -1,4 +1,4 @@
-//! The body: a disc or rectangle on driven wheels, with the limits of its motors, that slides along walls
+//! The body: a disc or rectangle on driven wheels. Its motors have limits, and it slides along walls
 //! (`dx/dt = f(x) + G(x) u`, paper, Eq. 1).
 
 mod contact;
@@ -15,16 +15,16 @@ use crate::walls::Walls;
 use contact::{slid, turned};
 use odometry::Odometry;
 
-/// Maximum step of the integration, in seconds. In one step the robot moves about a centimetre, less than the
-/// thickness of any wall.
+/// Maximum step of the integration, in seconds. In one step the robot moves about a centimetre, less than the thickness
+/// of any wall.
 pub(crate) const STEP: f64 = 0.01;
-/// Maximum distance, in metres, at which the bumper feels a wall.
+/// Maximum distance at which the bumper feels a wall, in metres.
 const FEELS: f64 = 0.001;
-/// Minimum fraction of the forward speed that must remain in contact with a wall for the wheels to keep turning: the
-/// fraction at a wall that is hit at 45°.
+/// Minimum fraction of the forward speed that must remain at a wall for the wheels to keep turning: the fraction that
+/// remains at 45° to the wall.
 const GLANCES: f64 = 0.5;
-/// Range of the search for walls, in metres beyond the body. The body can move as far as the search has found
-/// free before another search is needed.
+/// Range of the search for walls, in metres from the body's edge. The body can move through the space that the search
+/// has found free before the next search is needed.
 const LOOKS: f64 = 0.6;
 
 /// The pose and the motion of the body.
@@ -38,7 +38,7 @@ pub(crate) struct Body {
     left: f64,
     /// The speed of the right wheel, in m/s.
     right: f64,
-    /// Distance, in metres, that the body can move in any direction before it may touch a fixed obstacle.
+    /// Distance that the body can move in any direction before it may touch a fixed obstacle, in metres.
     clear: f64,
 }
 
@@ -54,7 +54,7 @@ enum Obstacle {
 }
 
 impl Body {
-    /// Returns a body at rest at `pose`, with the errors of this seed, or without errors.
+    /// Returns a body at rest at `pose`, with the odometry errors of `seed`, or without errors.
     pub(crate) fn new(drive: Drive, pose: Pose, seed: Option<u64>) -> Self {
         Self { pose, drive, odometry: Odometry::new(drive.slip, seed), left: 0.0, right: 0.0, clear: 0.0 }
     }
@@ -64,11 +64,11 @@ impl Body {
         Self::new(self.drive, pose, seed)
     }
 
-    /// Returns the maximum distance, in metres, that a point of the body moves in this time.
+    /// Returns the maximum distance that a point of the body moves in this time, in metres.
     pub(crate) fn goes_most(&self, seconds: f64) -> f64 {
         let way = self.drive.fastest * seconds;
         let turn = Radians(2.0 * self.drive.fastest / self.drive.wheel_base * seconds);
-        // Contact pushes a rectangle off by at most twice the way that its corners turn.
+        // A contact pushes a rectangle away by at most twice the distance that its corners move in a turn.
         way + 3.0 * (self.drive.form.moved(way, turn) - way) + FEELS
     }
 
@@ -77,7 +77,7 @@ impl Body {
         Footprint { pose: self.pose, form: self.drive.form }
     }
 
-    /// Returns the pose according to the wheels, relative to the start pose.
+    /// Returns the pose by odometry, relative to the start pose.
     pub(crate) fn odometry(&self) -> Pose {
         self.odometry.pose
     }
@@ -120,20 +120,21 @@ impl Body {
         let acceleration = self.drive.acceleration;
         let steps = libm::ceil(seconds / STEP).max(1.0);
         let step = seconds / steps;
-        // A period is at most a minute, so this fits.
+        // A period is at most a minute, so the number fits.
         for _ in 0..steps as u32 {
             let across = self.right - self.left;
             self.left = approached(self.left, left, acceleration * step);
             self.right = approached(self.right, right, acceleration * step);
             if let Obstacle::Wall { forward, turns } = self.step(step, walls) {
-                // The wheels stall as far as they push, and gain speed only against each other.
+                // The wall limits the forward speed; only the difference of the wheel speeds still approaches the
+                // commanded one.
                 let across = if turns { approached(across, right - left, 2.0 * acceleration * step) } else { 0.0 };
                 (self.left, self.right) = (forward - across / 2.0, forward + across / 2.0);
             }
         }
     }
 
-    /// Brakes until the wheels stand still.
+    /// Brakes until the wheels are at rest.
     pub(crate) fn brake(&mut self, walls: &Walls) {
         self.advance(&Twist::default(), self.drive.fastest / self.drive.acceleration + STEP, walls);
     }
@@ -168,13 +169,12 @@ impl Body {
         if turns && (v.0 == 0.0 || forward / v.0 >= GLANCES) {
             return Obstacle::Nothing;
         }
-        // It is not to come out faster, or backwards.
+        // The contact must not increase or reverse the speed.
         let forward = if v.0 > 0.0 { forward.clamp(0.0, v.0) } else { forward.clamp(v.0, 0.0) };
         Obstacle::Wall { forward, turns }
     }
 
-    /// Returns `true` if the body overlaps nothing at `there`, after its points have moved by at most `way`
-    /// metres.
+    /// Returns `true` if the body at `there` overlaps no obstacle, after its points have moved by at most `way` metres.
     fn is_free(&mut self, there: &Pose, way: f64, walls: &Walls) -> bool {
         let body = Footprint { pose: *there, form: self.drive.form };
         if walls.moving_gap(&body) < 0.0 {
@@ -189,8 +189,8 @@ impl Body {
 }
 
 impl Drive {
-    /// Returns the wheel speeds for an input. If a wheel is too fast, both are slowed by the same factor, so
-    /// that the curve stays the same; then they are truncated.
+    /// Returns the wheel speeds for an input. If a wheel is too fast, both speeds are reduced by the same factor, so
+    /// that the robot stays on its curve. Then they are truncated.
     fn commanded(&self, input: &Twist) -> (f64, f64) {
         let across = input.omega.0 * (self.wheel_base / 2.0);
         let (left, right) = (input.v.0 - across, input.v.0 + across);

@@ -1,4 +1,4 @@
-//! A charger: the pose of a robot on the charger, and its tolerance.
+//! A charger: the pose of a robot on it, and the tolerance of that pose.
 
 use mdle_runtime::{Meters, Pose, Radians};
 
@@ -10,7 +10,7 @@ const HEADING: Radians = Radians::from_degrees(15.0);
 /// A charger on the floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Charger {
-    /// The centre of a robot on the charger, in metres, and its heading.
+    /// Pose of a robot on the charger: its centre, in metres, and its heading.
     pub pose: Pose,
     /// Maximum distance of the robot's centre from that pose, in metres; above 0.
     pub reach: f64,
@@ -25,7 +25,7 @@ impl Charger {
         pose.distance(&self.pose).0 <= self.reach && off.0.abs() <= HEADING.0
     }
 
-    /// Returns points on the circle within which the centre of a robot on the charger lies.
+    /// Returns points on the circle in which the centre of a robot on the charger has to be.
     pub fn circle(&self) -> impl Iterator<Item = Place> {
         let at = self.pose;
         let reach = Meters(self.reach);

@@ -5,7 +5,7 @@ use crate::place::Place;
 
 /// Minimum side length of a cell, in metres.
 const CELL_LEAST: f64 = 1.0;
-/// Maximum number of cells for each robot.
+/// Maximum number of cells per robot.
 const CELLS_MOST: f64 = 8.0;
 
 /// The footprints of robots at one time, in a grid.
@@ -17,18 +17,18 @@ pub struct Crowd {
     cell: f64,
     columns: usize,
     rows: usize,
-    /// Index of the first entry of each cell, row by row, with one more element at the end.
+    /// Index of the first entry of each cell, row by row; an additional last element marks the end of the entries.
     starts: Vec<u32>,
     /// Numbers and places of the robots, ordered by the cells of their centres.
     entries: Vec<(u32, Footprint)>,
 }
 
-/// Groups of robots, such that no robot can touch a robot of another group.
+/// Groups of robots: no robot can touch a robot of another group.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Groups {
     /// Numbers of the robots, group by group, in ascending order within a group.
     members: Vec<u32>,
-    /// Index of the first member of each group, with one more element at the end.
+    /// Index of the first member of each group; an additional last element marks the end of the members.
     starts: Vec<u32>,
 }
 
@@ -42,7 +42,7 @@ impl Crowd {
         let (width, height) =
             (bound(x, f64::max).unwrap_or(0.0) - least.x, bound(y, f64::max).unwrap_or(0.0) - least.y);
         let cells = CELLS_MOST * bodies.len().max(1) as f64;
-        // As few cells as that also where the robots stand in a row.
+        // Limits the number of cells also if the robots stand in a row.
         let cell = libm::sqrt(width * height / cells).max(width.max(height) / cells).max(CELL_LEAST);
         let count = |length: f64| (length / cell) as usize + 1;
         let (columns, rows) = (count(width), count(height));
@@ -51,7 +51,7 @@ impl Crowd {
         crowd
     }
 
-    /// Enters all robots into the grid: first counts them for each cell, then puts them in place.
+    /// Enters all robots into the grid: first counts them per cell, then stores them.
     fn enter(&mut self) {
         let cells: Vec<usize> = self.bodies.iter().map(|body| self.cell_of(body.at())).collect();
         let mut starts = vec![0_u32; self.columns * self.rows + 1];
@@ -81,7 +81,7 @@ impl Crowd {
     }
 
     fn column(&self, x: f64) -> usize {
-        // Below zero becomes zero.
+        // The conversion turns negative values into zero.
         (((x - self.least.x) / self.cell) as usize).min(self.columns - 1)
     }
 
@@ -95,13 +95,13 @@ impl Crowd {
         &self.bodies
     }
 
-    /// Calls `take` with the number and the footprint of each robot whose centre is within `reach` metres of `at`; the
-    /// order depends on the footprints alone.
+    /// Calls `take` with the number and the footprint of each robot whose centre is within `reach` metres of `at`. The
+    /// order depends only on the footprints.
     pub fn near(&self, at: Place, reach: f64, mut take: impl FnMut(usize, &Footprint)) {
         let (left, right) = (self.column(at.x - reach), self.column(at.x + reach));
         for row in self.row(at.y - reach)..=self.row(at.y + reach) {
             let first = row * self.columns;
-            // Cells that are side by side have their entries side by side.
+            // Adjacent cells of a row have adjacent entries.
             let (from, to) = (self.starts[first + left], self.starts[first + right + 1]);
             for (number, body) in &self.entries[from as usize..to as usize] {
                 let (x, y) = (body.pose.x.0 - at.x, body.pose.y.0 - at.y);
@@ -112,8 +112,8 @@ impl Crowd {
         }
     }
 
-    /// Returns the groups of robots. Two robots are in one group if they are connected by a chain of robots whose
-    /// neighbours are at most `reach` metres apart, from centre to centre.
+    /// Returns the groups of robots. Two robots are in the same group if a chain of robots connects them in which
+    /// consecutive centres are at most `reach` metres apart.
     #[must_use]
     pub fn groups(&self, reach: f64) -> Groups {
         let mut leaders: Vec<u32> = (0..self.bodies.len() as u32).collect();
@@ -129,7 +129,7 @@ impl Crowd {
     }
 }
 
-/// Returns the lowest known number in the group of `number`, and shortens the chain that leads to it.
+/// Returns the lowest known number in the group of `number`, and shortens the chain to it.
 fn leader(leaders: &mut [u32], mut number: u32) -> u32 {
     while leaders[number as usize] != number {
         leaders[number as usize] = leaders[leaders[number as usize] as usize];
@@ -139,8 +139,8 @@ fn leader(leaders: &mut [u32], mut number: u32) -> u32 {
 }
 
 impl Groups {
-    /// Returns the groups. `leaders` has an entry for each robot: its own number if this is the lowest number in its
-    /// group, otherwise a lower number of its group.
+    /// Returns the groups. `leaders` has an entry for each robot: its own number if this is the lowest in its group,
+    /// otherwise a lower number of its group.
     fn of(leaders: &mut [u32]) -> Self {
         let mut sizes = vec![0_u32; leaders.len()];
         for number in 0..leaders.len() as u32 {
@@ -168,7 +168,7 @@ impl Groups {
         self.starts.len() - 1
     }
 
-    /// Returns the numbers of the robots of a group, in their order; `number` is below [`Groups::count`].
+    /// Returns the numbers of the robots in a group, in ascending order; `number` is below [`Groups::count`].
     #[must_use]
     pub fn group(&self, number: usize) -> &[u32] {
         let bounds = self.starts.get(number).zip(self.starts.get(number + 1));

@@ -1,4 +1,4 @@
-//! Draws the pictures of a run from its record, when the run has ended.
+//! Draws the pictures of a run from its record, after the run has ended.
 
 use mdle_runtime::{Nanos, Pose, Sensed};
 
@@ -10,7 +10,7 @@ use crate::robot::Simulated;
 use crate::trail::Trail;
 use crate::world::World;
 
-/// The record of a run in a world, from which its pictures are drawn.
+/// Record of a run in a world, from which its pictures are drawn.
 #[derive(Debug, Clone)]
 pub struct Drawing {
     world: World,
@@ -18,8 +18,8 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Begins the record of `robot` in `world`; `setup` names the world, the body and the seed in titles. Only an
-    /// `animated` record keeps the data of a moving picture.
+    /// Begins the record of `robot` in `world`; `setup` describes the world, the body and the seed in titles. The data
+    /// of a moving picture are recorded only if `animated` is `true`.
     #[must_use]
     pub fn of(robot: &Simulated, world: &World, setup: String, animated: bool) -> Self {
         let mut trail = Trail::from(&robot.footprint());
@@ -29,8 +29,9 @@ impl Drawing {
         Self { world: world.clone(), trail }
     }
 
-    /// Begins the record of a robot whose world is not known, at its first output; the path driven comes from odometry.
-    /// `setup` names the run in titles. Only an `animated` record keeps the data of a moving picture.
+    /// Begins the record of a robot whose world is not known, at its first output; the path driven is that of the
+    /// odometry. `setup` describes the run in titles. The data of a moving picture are recorded only if `animated` is
+    /// `true`.
     #[must_use]
     pub fn without_world(y: &Sensed, setup: String, animated: bool) -> Self {
         let mut trail = Trail::from(&Footprint { pose: y.odometry, form: Form::of(&y.shape) });
@@ -40,7 +41,7 @@ impl Drawing {
     }
 
     /// Records an output at time `t` of a robot whose world is not known; `touches` is `true` if a contact begins with
-    /// it.
+    /// this output.
     pub fn sensed(&mut self, y: &Sensed, t: Nanos, touches: bool) {
         self.trail.went(&y.odometry);
         self.trail.sensed(y, t);
@@ -49,19 +50,19 @@ impl Drawing {
         }
     }
 
-    /// Records the last pose of a robot whose world is not known, after its turns.
+    /// Records the final pose of a robot whose world is not known.
     pub fn rests_at(&mut self, pose: &Pose) {
         self.trail.went(pose);
     }
 
-    /// Returns the places of echoes so far, at most one in a square of 4 cm.
+    /// Returns the positions of the echoes so far, at most one per square of 4 cm.
     #[must_use]
     pub fn echoes(&self) -> &[Place] {
         &self.trail.echoes
     }
 
     /// Records an exchange of `robot` at time `t` with the output `sensed`; `touches` is `true` if a contact begins
-    /// with it.
+    /// with this exchange.
     pub fn exchanged(&mut self, robot: &Simulated, sensed: &Sensed, t: Nanos, touches: bool) {
         self.trail.went(&robot.pose());
         self.trail.things.clear();
@@ -95,7 +96,7 @@ impl Drawing {
         plot::svg(&self.world, &self.trail)
     }
 
-    /// Draws the run as an SVG picture that moves, for a browser.
+    /// Draws the run as an animated SVG picture, for a browser.
     #[must_use]
     pub fn animation(&self) -> String {
         plot::animated(&self.world, &self.trail)
@@ -147,7 +148,8 @@ mod tests {
     fn the_echoes_of_sonars_that_fire_between_turns_are_where_they_were_heard() {
         let make = Make { body: Body::Scout, without: vec![Part::Steps], seed: None };
         let (trail, robot) = ahead("[[wall]]\npoints = [[3, -9], [3, 9]]", &make, 0.4, 5, Duration::from_secs(1));
-        // The sonar in front hears the wall itself, its neighbours something nearer than where their axes meet it.
+        // The front sonar hears the wall itself; its neighbours hear points of the wall that are nearer than where
+        // their axes meet it.
         let greatest = trail.echoes.iter().map(|echo| echo.x).fold(0.0, f64::max);
         assert!((greatest - 3.0).abs() < 1e-6 && robot.pose().x.0 > 1.0, "{:?}", trail.echoes);
     }

@@ -9,13 +9,13 @@ use crate::robot::Simulated;
 use crate::trail::{Companion, Trail};
 use crate::world::World;
 
-/// The record of several robots in a world, from which their picture is drawn.
+/// Record of several robots in a world, from which their picture is drawn.
 #[derive(Debug, Clone)]
 pub struct FleetDrawing {
     world: World,
     title: String,
     robots: Vec<RobotWay>,
-    /// Places and times at which a robot began to touch something.
+    /// Positions and times at which a robot came into contact with an obstacle.
     contacts: Vec<(Place, Nanos)>,
 }
 
@@ -38,7 +38,7 @@ impl FleetDrawing {
         Self { world: world.clone(), title: title.to_owned(), robots: Vec::new(), contacts: Vec::new() }
     }
 
-    /// Records the current pose of the robot `name`; `touches` is `true` if the robot touches something.
+    /// Records the current pose of the robot `name`; `touches` is `true` if the robot touches an obstacle.
     pub fn went(&mut self, name: &str, robot: &Simulated, touches: bool) {
         let Footprint { pose, form } = robot.footprint();
         let place = Place::of(&pose);

@@ -1,5 +1,5 @@
-//! The area of the floor that a robot's body covers: a disc or a rectangle around its centre. Walls, moving
-//! objects and other robots touch this area, and sonars hear it.
+//! The area of the floor that a robot's body covers: a disc or a rectangle around its centre. It is used for contacts
+//! with walls, moving objects and other robots, and for the echoes of sonars.
 
 #[cfg(test)]
 mod tests;
@@ -12,7 +12,7 @@ use crate::grid::Segment;
 use crate::place::Place;
 use crate::surfaces::{Surface, apart};
 
-/// Radius of a Scout, which is a disc, in metres.
+/// Radius of a Scout's body, which is a disc, in metres.
 pub(crate) const RADIUS: f64 = 0.205;
 
 /// Form of a body, in metres.
@@ -41,7 +41,7 @@ pub struct Footprint {
     pub form: Form,
 }
 
-/// The nearest points of a body and an obstacle.
+/// Nearest points of a body and an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Contact {
     /// Distance between the two points, in metres; negative where body and obstacle overlap.
@@ -52,9 +52,9 @@ pub(crate) struct Contact {
     pub(crate) body: Place,
 }
 
-/// Distance, in metres, beyond a ray at which a body may still be met; larger than rounding errors.
+/// Distance beyond a ray's end at which a body may still be hit, in metres; larger than rounding errors.
 const BEYOND: f64 = 1e-6;
-/// Gap of a rectangle that overlaps something; the depth of the overlap is not known.
+/// Gap of a rectangle that overlaps an obstacle; the depth of the overlap is not known.
 const OVERLAPS: f64 = -1.0;
 
 impl Form {
@@ -90,8 +90,8 @@ impl Form {
         }
     }
 
-    /// Returns the maximum distance, in metres, by which a point of the outline moves when the body moves by
-    /// `way` metres and turns by `turn`; a disc may turn freely.
+    /// Returns the maximum distance, in metres, by which a point of the outline moves when the body moves by `way`
+    /// metres and turns by `turn`. The turn of a disc moves no point of its outline.
     pub(crate) fn moved(self, way: f64, turn: Radians) -> f64 {
         match self {
             Self::Disc { .. } => way.abs(),
@@ -130,7 +130,7 @@ impl Footprint {
         self.contact_with(other).gap
     }
 
-    /// Returns the sides of a rectangle, counter-clockwise from the front; none for a disc.
+    /// Returns the sides of a rectangle, counter-clockwise from the front; a disc has no sides.
     pub(crate) fn sides(&self) -> impl Iterator<Item = Segment> {
         let corners = match self.form {
             Form::Disc { .. } => None,
@@ -142,19 +142,19 @@ impl Footprint {
         sides.into_iter().flatten().map(|(from, to)| Segment::between(from, to))
     }
 
-    /// Returns the ends of each side of a rectangle, counter-clockwise from the front; none for a disc.
+    /// Returns the ends of each side of a rectangle, counter-clockwise from the front; a disc has no sides.
     pub fn edges(&self) -> impl Iterator<Item = (Place, Place)> {
         self.sides().map(|side| (side.from, side.to()))
     }
 
-    /// Converts a point relative to the centre, in axes that turn with the body, to a point on the floor.
+    /// Converts a point in the body's frame to a point on the floor.
     fn outward(&self, place: Place) -> Place {
         let (sin, cos) = libm::sincos(self.pose.theta.0);
         let at = self.at();
         Place { x: at.x + place.x * cos - place.y * sin, y: at.y + place.x * sin + place.y * cos }
     }
 
-    /// Converts a point on the floor to a point relative to the centre, in axes that turn with the body.
+    /// Converts a point on the floor to a point in the body's frame.
     fn inward(&self, place: Place) -> Place {
         let (sin, cos) = libm::sincos(self.pose.theta.0);
         let (x, y) = (place.x - self.pose.x.0, place.y - self.pose.y.0);
@@ -173,8 +173,8 @@ impl Footprint {
         }
     }
 
-    /// Returns the point of the body that is nearest to `at`, which is outside; for a disc, a point of its
-    /// edge.
+    /// Returns the point of the body that is nearest to `at`, which must be outside the body; for a disc, a point of
+    /// its edge.
     fn nearest(&self, at: Place) -> Place {
         match self.form {
             Form::Disc { radius } => {
@@ -207,7 +207,7 @@ impl Footprint {
         contacts.fold(nothing, |least, contact| if contact.gap < least.gap { contact } else { least })
     }
 
-    /// Returns `true` if a part of the segment lies in the rectangle, by clipping it at each pair of sides.
+    /// Returns `true` if a part of the segment is inside the rectangle, by clipping the segment at each pair of sides.
     fn is_crossed(&self, segment: &Segment) -> bool {
         let (half_length, half_width) = self.form.halves();
         let (from, to) = (self.inward(segment.from), self.inward(segment.to()));
@@ -245,8 +245,8 @@ impl Footprint {
         }
     }
 
-    /// Returns the distance that a ray from outside in the unit direction `way` travels before it meets the body;
-    /// `None` if the ray does not meet it within `most` metres.
+    /// Returns the distance that a ray from outside in the unit direction `way` travels before it hits the body; `None`
+    /// if the ray does not hit the body within `most` metres.
     pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
         let Form::Disc { radius } = self.form else {
             return self.sides().filter_map(|side| side.met(from, way, most)).reduce(f64::min);
@@ -265,8 +265,8 @@ impl Footprint {
         (range >= 0.0 && range < most).then_some(range)
     }
 
-    /// Returns the surface that a ray from outside in the unit direction `way` meets; `None` if the ray does not meet
-    /// the body within `most` metres. The surface is smooth, and a disc has no edges.
+    /// Returns the surface that a ray from outside in the unit direction `way` hits; `None` if the ray does not hit the
+    /// body within `most` metres. The surface is smooth, and a disc has no edges.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let Form::Disc { radius } = self.form else {
             let met = self.sides().filter_map(|side| Some((side.met(from, way, most)?, side)));

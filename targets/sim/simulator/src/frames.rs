@@ -1,4 +1,4 @@
-//! Records the frames of a moving picture: a limited number, evenly spread over the run, regardless of its length.
+//! Records the frames of a moving picture: a limited number, evenly spread over the run, regardless of its duration.
 
 use mdle_runtime::{Nanos, Pose, SONARS};
 
@@ -7,7 +7,7 @@ use crate::place::Place;
 /// Maximum number of frames kept; when it is reached, every second frame is removed.
 pub(crate) const FRAMES_MOST: usize = 800;
 
-/// A frame: the state of the robot and of the moving objects at a certain time of the run.
+/// A frame: the state of the robot and of the moving objects at one time of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Frame {
     pub(crate) t: Nanos,
@@ -18,13 +18,13 @@ pub(crate) struct Frame {
     pub(crate) things: Vec<Option<Place>>,
 }
 
-/// The frames of a run; as the run gets longer, a smaller fraction of them is kept.
+/// Frames of a run. The longer the run, the smaller the fraction of its frames that is kept.
 #[derive(Debug, Clone)]
 pub(crate) struct Frames {
     kept: Vec<Frame>,
     /// The last frame of the run, even if it is not among the kept frames; `None` before the first frame.
     last: Option<Frame>,
-    /// Interval, in frames, between two frames that are kept.
+    /// Interval, in frames, at which frames are kept.
     stride: u64,
     seen: u64,
 }

@@ -5,12 +5,12 @@ use mdle_runtime::{Pose, Radians};
 
 use crate::place::Place;
 
-/// Maximum coordinate and maximum radius, in metres, as in the file of a world.
+/// Maximum coordinate and maximum radius, in metres, as in a world file.
 const FURTHEST: f64 = 1e6;
 /// Number of dots on the edge of a circle on a map.
 const DOTS: u16 = 72;
 
-/// A zone of the floor in which a run is to end, and optionally a heading.
+/// Zone of the floor in which a run is to end, and optionally a heading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
     /// Zone in which the robot's centre must be.
@@ -19,7 +19,7 @@ pub struct Goal {
     pub heading: Option<(Radians, Radians)>,
 }
 
-/// The form of a goal, edges included.
+/// Form of a goal, edges included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Zone {
     /// A rectangle along the axes of the floor.
@@ -42,7 +42,7 @@ impl Goal {
     /// Reads `x,y,radius` or `x,y,radius,heading,tolerance`.
     ///
     /// # Errors
-    /// Fails with a sentence that says what to type instead.
+    /// Fails if the text has another form; the message says what to type instead.
     pub fn read(text: &str) -> Result<Self, String> {
         let sentence = "expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in \
                         `7,3,0.5` or `7,3,50cm,90,15`";

@@ -1,20 +1,20 @@
-//! Segments in a uniform grid: finds the first segment that a ray hits, and the segments near a place. The
-//! simulator's geometry of rays is all in this module.
+//! A uniform grid of segments: finds the first segment that a ray hits, and the segments near a point. This module
+//! contains all of the simulator's ray geometry.
 //!
-//! A ray visits the cells on its way in order (Amanatides and Woo, 1987) and stops in the first cell that it
-//! does not leave before a hit. It uses only additions, multiplications, divisions and square roots, so that
-//! results have the same bits on every machine.
+//! A ray visits the cells on its path in order (Amanatides and Woo, 1987) and stops in the first cell that contains a
+//! hit. The code uses only additions, multiplications, divisions and square roots, so that results have the same bits
+//! on every machine.
 
 use crate::place::Place;
 
-/// Approximate number of cells per segment: more cells are faster and take more memory.
+/// Approximate number of cells per segment: more cells are faster but take more memory.
 const CELLS_FOR_EACH: f64 = 3.0;
 /// Maximum number of cells along one axis.
 const CELLS_MOST: f64 = 4096.0;
-/// Maximum number of cells that a segment of mean length crosses: a world of long walls gets larger cells.
+/// Maximum number of cells that a segment of mean length crosses: a world with long walls gets larger cells.
 const CROSSED_MOST: f64 = 8.0;
-/// Fraction of a cell by which a segment is extended at both ends when it is entered into the grid, so that rounding
-/// loses no cell.
+/// Fraction of a cell by which a segment is extended at both ends when it is entered into the grid, so that no cell is
+/// missed by rounding.
 const BEYOND: f64 = 1e-6;
 
 /// A segment from the point `from` to `from` plus `along`.
@@ -24,16 +24,16 @@ pub(crate) struct Segment {
     pub(crate) along: Place,
 }
 
-/// The point at which a ray hits a segment.
+/// Point at which a ray hits a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hit {
     /// Distance from the start of the ray, in metres.
     pub(crate) range: f64,
-    /// The number of the segment.
+    /// Number of the segment.
     pub(crate) segment: usize,
 }
 
-/// A grid of segments, each of which is entered in every cell that it touches.
+/// A grid of segments; each segment is entered in every cell that it touches.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
     least: Place,
@@ -41,7 +41,7 @@ pub(crate) struct Grid {
     cell: f64,
     columns: usize,
     rows: usize,
-    /// Index of the first entry of each cell, with one more element at the end.
+    /// Index of the first entry of each cell; an additional last element marks the end of the entries.
     starts: Vec<u32>,
     entries: Vec<(Segment, u32)>,
 }
@@ -59,7 +59,7 @@ impl Segment {
     /// `None` if the ray does not hit it within `most` metres.
     pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
         let (ox, oy) = (self.from.x - from.x, self.from.y - from.y);
-        // Cramer's rule; divided only once it is known that there is a hit.
+        // Cramer's rule; the division is only done once a hit is certain.
         let determinant = way.x * self.along.y - way.y * self.along.x;
         let sign = if determinant < 0.0 { -1.0 } else { 1.0 };
         let size = determinant * sign;
@@ -69,12 +69,12 @@ impl Segment {
         met.then(|| range / size)
     }
 
-    /// Returns the place of this segment that is nearest to `at`.
+    /// Returns the point of this segment that is nearest to `at`.
     pub(crate) fn nearest(&self, at: Place) -> Place {
         let (ox, oy) = (at.x - self.from.x, at.y - self.from.y);
         let part =
             (ox * self.along.x + oy * self.along.y) / (self.along.x * self.along.x + self.along.y * self.along.y);
-        // No segment has length zero.
+        // Every segment has a positive length.
         let part = part.clamp(0.0, 1.0);
         Place { x: self.from.x + part * self.along.x, y: self.from.y + part * self.along.y }
     }
@@ -100,7 +100,7 @@ impl Grid {
         grid
     }
 
-    /// Enters all segments: first counts them for each cell, then puts them in place.
+    /// Enters all segments: first counts them per cell, then stores them.
     fn enter(&mut self, segments: &[Segment]) {
         let mut starts = vec![0_u32; self.columns * self.rows + 1];
         for segment in segments {
@@ -122,8 +122,8 @@ impl Grid {
         (self.starts, self.entries) = (starts, entries);
     }
 
-    /// Calls `take` with every cell that a segment touches: column by column, with the rows between its entry
-    /// and its exit.
+    /// Calls `take` with every cell that a segment touches: column by column, with the rows that the segment crosses
+    /// there.
     fn touched(&self, segment: &Segment, mut take: impl FnMut(usize)) {
         let Segment { from, along } = *segment;
         let to = segment.to();
@@ -131,7 +131,7 @@ impl Grid {
         let (left, right) = (from.x.min(to.x) - beyond, from.x.max(to.x) + beyond);
         let (low, high) = (from.y.min(to.y) - beyond, from.y.max(to.y) + beyond);
         for column in self.column(left)..=self.column(right) {
-            // The part of the segment that lies in this column.
+            // Part of the segment in this column.
             let edge = self.least.x + column as f64 * self.cell;
             let rises = |x: f64| from.y + along.y * ((x - from.x) / along.x).clamp(0.0, 1.0);
             let (mut bottom, mut top) = (low, high);
@@ -146,7 +146,7 @@ impl Grid {
     }
 
     fn column(&self, x: f64) -> usize {
-        // Below zero becomes zero.
+        // The conversion turns negative values into zero.
         (((x - self.least.x) / self.cell) as usize).min(self.columns - 1)
     }
 
@@ -159,7 +159,7 @@ impl Grid {
         &self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// Returns the first segment that a ray from `from` in the unit direction `way` hits; `None` if the ray hits none
+    /// Returns the first segment that a ray from `from` in the unit direction `way` hits; `None` if there is no hit
     /// within `most` metres.
     pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
         let (entered, left) = self.crossed(from, way, most)?;
@@ -190,7 +190,7 @@ impl Grid {
         (best.segment != usize::MAX).then_some(best)
     }
 
-    /// Returns the distances along a ray at which it enters and leaves the grid; `None` if it never does.
+    /// Returns the distances along a ray at which it enters and leaves the grid; `None` if it does not cross the grid.
     fn crossed(&self, from: Place, way: Place, most: f64) -> Option<(f64, f64)> {
         let beyond = BEYOND * self.cell;
         let slab = |from: f64, way: f64, cells: usize| {
@@ -208,13 +208,13 @@ impl Grid {
         (entered <= left).then_some((entered, left))
     }
 
-    /// Returns the number of segments in the cell of a place.
+    /// Returns the number of segments in the cell that contains `at`.
     pub(crate) fn beside(&self, at: Place) -> u64 {
         self.entries(self.column(at.x), self.row(at.y)).len() as u64
     }
 
-    /// Returns `true` if a ray from `at` of the length `reach` may meet a segment: the rectangle around the segment and
-    /// the square that contains all such rays overlap.
+    /// Returns `true` if a ray from `at` of the length `reach` may hit a segment: whether the bounding rectangle of all
+    /// segments overlaps the square that contains all such rays.
     pub(crate) fn is_in_reach(&self, at: Place, reach: f64) -> bool {
         let reach = reach + BEYOND * (self.cell + reach);
         let (left, right) = (at.x - reach, at.x + reach);
@@ -240,7 +240,7 @@ impl Grid {
     }
 }
 
-/// A ray along one axis of the grid.
+/// State of a ray along one axis of the grid.
 struct Axis {
     /// Distance along the ray to the next cell border.
     next: f64,
@@ -259,7 +259,7 @@ impl Axis {
         Self { next: (border - from) / way, between: (cell / way).abs(), forward }
     }
 
-    /// Moves on to the next cell; returns `true` if there is one.
+    /// Advances to the next cell; returns `true` if there is one.
     fn step(&mut self, number: &mut usize, count: usize) -> bool {
         self.next += self.between;
         let next = if self.forward { *number + 1 } else { number.wrapping_sub(1) };

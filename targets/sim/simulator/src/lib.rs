@@ -1,8 +1,7 @@
-//! The simulator of the target `sim`, without a host: worlds, the robot in them, and its pictures as texts.
+//! The simulator of the target `sim`, without a host: worlds, the robot in them, and pictures of runs as SVG text.
 //!
-//! This crate does no I/O and needs no operating system. It does not depend on the machine on which it runs: it
-//! uses no wall clock, no trigonometry of the platform and no unordered maps. Two runs with the same options
-//! produce the same bytes.
+//! This crate does no I/O and needs no operating system. Its results do not depend on the machine: it uses no wall
+//! clock, no trigonometry of the platform and no unordered maps. Two runs with the same options produce the same bytes.
 #![forbid(unsafe_code)]
 
 /// The alphabet of the target `sim`, which `mdlec bind` writes beside `alphabet.mdle`.
@@ -45,9 +44,9 @@ pub use fleet_drawing::FleetDrawing;
 pub use footprint::{Footprint, Form};
 pub use goal::{Goal, Zone, edge};
 pub use mdle_runtime::Sensed;
-/// The robot's output.
+/// Output of the robot.
 pub use mdle_runtime::Sensed as Output;
-/// The robot's input.
+/// Input of the robot.
 pub use mdle_runtime::Twist as Input;
 pub use model::{Body, PARTS, Part};
 pub use moving::{Schedule, Stop, Thing};

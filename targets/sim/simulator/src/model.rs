@@ -13,8 +13,8 @@ use figures::{atrv, ideal, scout};
 /// A body to simulate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Body {
-    /// A body with the size and the motors of a Super Scout. Its sonars all ping in every turn and hear the
-    /// nearest object in their cones, and its odometry has no errors.
+    /// A body with the size and the motors of a Super Scout. All its sonars ping in every turn and hear the nearest
+    /// object in their cones, and its odometry has no errors.
     #[default]
     Ideal,
     /// A Nomadic Super Scout II. Its sonars fire in turn, miss surfaces that they do not face, and have errors;
@@ -34,12 +34,12 @@ impl fmt::Display for Body {
     }
 }
 
-/// Parts of a body that can be left out to see their effect.
+/// Parts of a body's model that can be left out to see their effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// Lobe of a sonar. Without it, all objects in a cone of 25° are heard equally.
     Lobe,
-    /// Surfaces that reflect like mirrors. Without this part, surfaces are heard from any angle.
+    /// Mirror-like reflection of surfaces. Without it, surfaces are heard from any angle.
     Specular,
     /// Minimum range. Without it, the sonars hear objects at any distance.
     Minimum,
@@ -55,7 +55,7 @@ pub enum Part {
     Slip,
 }
 
-/// All parts, with their names in options.
+/// All parts, with their names in command-line options.
 pub const PARTS: [(&str, Part); 8] = [
     ("lobe", Part::Lobe),
     ("specular", Part::Specular),
@@ -67,13 +67,12 @@ pub const PARTS: [(&str, Part); 8] = [
     ("slip", Part::Slip),
 ];
 
-/// Everything needed to simulate a body.
+/// Model of a body: everything needed to simulate it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Model {
     pub(crate) drive: Drive,
     pub(crate) hearing: Hearing,
-    /// Number of bumper switches; switch `i` lies at the fraction `i` of a circle, counter-clockwise from the
-    /// front.
+    /// Number of bumper switches, which are evenly spaced around the body, counter-clockwise from the front.
     pub(crate) switches: u8,
     pub(crate) pack: Pack,
 }
@@ -95,28 +94,29 @@ pub(crate) struct Drive {
     pub(crate) slip: Option<Slip>,
 }
 
-/// Errors of odometry: standard deviations of normal distributions.
+/// Errors of odometry, as standard deviations of normal distributions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Slip {
     /// Relative error of the distance driven, drawn once for a run; it represents the size of the tyres.
     pub(crate) way: f64,
-    /// Relative error of the angle turned, drawn once for a run; it represents the points at which the wheels
-    /// touch the floor.
+    /// Relative error of the angle turned, drawn once for a run; it represents uncertainty about where the wheels touch
+    /// the floor.
     pub(crate) turn: f64,
     /// Error of the heading, in radians per metre driven, drawn once for a run; it represents unequal wheels.
     pub(crate) bend: f64,
-    /// Error of the heading, in radians, after a metre driven; it grows with the square root of the distance.
+    /// Standard deviation of the heading's random error after a metre driven, in radians; it grows with the square root
+    /// of the distance.
     pub(crate) wander: f64,
 }
 
-/// The model of the sonars, in metres and radians.
+/// Model of the sonars, in metres and radians.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hearing {
     pub(crate) transducers: Vec<Transducer>,
-    /// Distance of the transducers from the centre as laws assume it, in metres.
+    /// Distance of the transducers from the centre, as laws assume it, in metres.
     pub(crate) ring_radius: f64,
-    /// Distance, on a wall beside the robot, between the points that the two neighbours of the sonar square to
-    /// the wall hear, in metres; `None` if ranges are too coarse to measure a heading.
+    /// Distance, along a wall beside the robot, between the points that the two neighbours of the sonar facing the wall
+    /// hear, in metres; `None` if ranges are too coarse to measure a heading.
     pub(crate) beside_apart: Option<f64>,
     /// Angle of the outermost rays from the axis.
     pub(crate) half_cone: Radians,
@@ -128,11 +128,11 @@ pub(crate) struct Hearing {
     pub(crate) facing: Option<Radians>,
     pub(crate) least: f64,
     pub(crate) most: f64,
-    /// Resolution of ranges, in metres, to which they are rounded down; 0 for exact ranges.
+    /// Resolution to which ranges are rounded down, in metres; 0 for exact ranges.
     pub(crate) step: f64,
     /// Standard deviation of a range's error, in metres.
     pub(crate) spread: f64,
-    /// Maximum common error of all ranges of a run, as a fraction: it depends on the temperature of the air.
+    /// Maximum common relative error of all ranges of a run, caused by the temperature of the air.
     pub(crate) scale: f64,
     /// Standard deviation of the loudness of an echo, as a fraction of the loudness needed to hear it.
     pub(crate) fading: f64,
@@ -140,19 +140,19 @@ pub(crate) struct Hearing {
     pub(crate) misses: f64,
     /// Fraction of pings with a random range.
     pub(crate) outliers: f64,
-    /// Groups of transducers that ping together, and the time between two groups; `None` if all ping in every
-    /// turn.
+    /// Groups of transducers that ping together, and the time between two groups; `None` if all transducers ping in
+    /// every turn.
     pub(crate) order: Option<Order>,
 }
 
-/// Transducers that ping together, one group after the other.
+/// Firing order: groups of transducers that ping together, one group after another.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Order {
     pub(crate) groups: Vec<Vec<usize>>,
     pub(crate) gap: Nanos,
 }
 
-/// A sonar on the body.
+/// A sonar transducer on the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transducer {
     /// Position ahead of the centre, in metres.
@@ -160,11 +160,11 @@ pub(crate) struct Transducer {
     /// Position to the left of the centre, in metres.
     pub(crate) y: f64,
     pub(crate) bearing: Radians,
-    /// Sonar, of the paper's sixteen, that the transducer represents.
+    /// The sonar, of the paper's sixteen, to which the transducer belongs.
     pub(crate) sonar: SonarId,
 }
 
-/// Angle from the axis of a cone without a lobe to its edge.
+/// Angle between the axis and the edge of a cone without a lobe.
 const HALF_CONE: Radians = Radians::from_degrees(12.5);
 
 impl Model {

@@ -1,8 +1,7 @@
-//! Moving parts of a world: doors that open and close, boxes and discs on a schedule.
+//! Moving parts of a world: doors that open and close, and boxes and discs that move on a schedule.
 //!
 //! No object moves into the robot. A door that would close on the robot stays open, and a box or disc that would move
-//! into the robot stops in contact until the robot has left. The object's schedule then continues, so the object is
-//! late from then on.
+//! into the robot stops in contact until the robot has left. Then the object resumes its schedule with this delay.
 
 use crate::footprint::{Footprint, Form};
 use crate::grid::{Hit, Segment};
@@ -10,36 +9,35 @@ use crate::outline::Outline;
 use crate::place::Place;
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
 
-/// Minimum distance, in metres, to which a moving object approaches the robot; the bumper feels the object at
-/// this distance.
+/// Minimum distance to which a moving object approaches the robot, in metres; the bumper feels the object at this
+/// distance.
 const STOPS_AT: f64 = 1e-4;
-/// Distance, in metres, from which an object is far from the robot; greater than `STOPS_AT` by more than rounding.
+/// Distance from which an object is far from the robot, in metres; greater than `STOPS_AT` by more than rounding.
 const FAR: f64 = 0.01;
 
 /// A moving object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thing {
-    /// Outline of a closed door, or of a box or disc where its schedule begins.
+    /// Outline of a closed door, or of a box or disc at the beginning of its schedule.
     pub outline: Outline,
     /// Motion of the object.
     pub schedule: Schedule,
 }
 
-/// The motion of a moving object over time, in seconds since the robot was switched on.
+/// Motion of an object over time, in seconds since the robot was switched on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Schedule {
     /// A door, which is closed except at certain times.
     Open {
-        /// Intervals during which the door is open, each with its begin and end, in seconds. They do not
-        /// overlap.
+        /// Intervals during which the door is open, each with its begin and end, in seconds. They do not overlap.
         times: Vec<[f64; 2]>,
-        /// Period after which the times repeat, in seconds; `None` if they do not.
+        /// Period after which the times repeat, in seconds; `None` if they do not repeat.
         every: Option<f64>,
     },
     /// A box or disc that moves straight from stop to stop.
     Way {
-        /// Times and positions of the centre: at least one, in order. The object rests before the first stop
-        /// and after the last.
+        /// Times and positions of the centre: at least one, in order. The object rests before the first stop and after
+        /// the last.
         stops: Vec<Stop>,
         /// `true` if the object continues from the first stop after the last stop.
         repeats: bool,
@@ -61,7 +59,7 @@ impl Thing {
         self.outline.points.iter().map(move |point| Place { x: point.x + gone.x, y: point.y + gone.y })
     }
 
-    /// Returns the positions between which the centre of the object moves; none for a door.
+    /// Returns the positions between which the centre of the object moves; a door has none.
     pub(crate) fn way(&self) -> impl Iterator<Item = Place> {
         let stops = match &self.schedule {
             Schedule::Open { .. } => [].as_slice(),
@@ -102,7 +100,7 @@ impl Schedule {
     }
 }
 
-/// Returns the position at time `t` between two stops; `None` before the first stop and from the last one on.
+/// Returns the position at time `t` between two stops; `None` before the first stop, and from the last stop on.
 fn at(stops: &[Stop], t: f64) -> Option<Place> {
     let (from, to) = stops.iter().zip(stops.iter().skip(1)).find(|(from, to)| from.t <= t && t < to.t)?;
     let part = (t - from.t) / (to.t - from.t);
@@ -114,7 +112,7 @@ fn at(stops: &[Stop], t: f64) -> Option<Place> {
 #[derive(Debug, Clone)]
 pub(crate) struct Moving {
     schedule: Schedule,
-    /// Time of the object's own clock, in seconds; it stops while the object waits for the robot.
+    /// Time of the object's own clock, in seconds; the clock stops while the object waits for the robot.
     t: f64,
     /// Sides of the object at its first position.
     first: Vec<Segment>,
@@ -182,7 +180,8 @@ impl Moving {
             return;
         }
         let mut part = 1.0;
-        // Halved until it is free, which it was before it moved; a door has no half way.
+        // The step is halved until the object can make it: its position before the step was free. A door has no partial
+        // step.
         while part > 1e-3 {
             if self.is_put(self.schedule.moved(self.t + seconds * part), body) {
                 self.t += seconds * part;
@@ -239,7 +238,7 @@ impl Moving {
         }
     }
 
-    /// Returns the first side of the object that a ray hits; `None` if the ray hits none within `most` metres.
+    /// Returns the first side of the object that a ray hits; `None` if there is no hit within `most` metres.
     pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
         let around = self.around()?;
         let (x, y) = (around.x - from.x, around.y - from.y);
@@ -257,7 +256,7 @@ impl Moving {
         best
     }
 
-    /// Returns the surface of the object that a ray hits; `None` if the ray hits none within `most` metres.
+    /// Returns the surface of the object that a ray hits; `None` if there is no hit within `most` metres.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let Hit { range, segment } = self.ray(from, way, most)?;
         let at = Place { x: from.x + range * way.x, y: from.y + range * way.y };

@@ -1,16 +1,16 @@
-//! Random numbers of a run. Each purpose has a separate stream, so that leaving out one purpose does not change
-//! the others.
+//! Random numbers of a run. Each purpose has a separate stream, so that leaving out one purpose does not change the
+//! others.
 
 use std::f64::consts::TAU;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// A stream of random numbers, which is the same for the same seed and purpose.
+/// A stream of random numbers, determined by the seed and the purpose.
 #[derive(Debug, Clone)]
 pub(crate) struct Noise(ChaCha8Rng);
 
-/// The purpose of random numbers; each has its own stream.
+/// Purpose of random numbers; each purpose has its own stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// Errors of the sonars' ranges.
@@ -35,13 +35,13 @@ impl Noise {
     /// Returns a number from the standard normal distribution, by Box and Muller's transform.
     pub(crate) fn normal(&mut self) -> f64 {
         let (one, other) = (self.uniform(), self.uniform());
-        // 1 - u lies above 0, where the logarithm is finite.
+        // 1 - u is above 0, so the logarithm is finite.
         libm::sqrt(-2.0 * libm::log(1.0 - one)) * libm::cos(TAU * other)
     }
 
     /// Returns a number from 0 up to, but not including, 1.
     pub(crate) fn uniform(&mut self) -> f64 {
-        // The upper 53 bits are all that an f64 can hold.
+        // The upper 53 bits, which an f64 can represent exactly.
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }

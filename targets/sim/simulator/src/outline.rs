@@ -2,14 +2,14 @@
 
 use crate::place::Place;
 
-/// A wall, a box or a disc, as the line around it.
+/// A wall, a box or a disc, represented by its outline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     /// Name of the outline in messages.
     pub name: String,
-    /// Corners in order; a box ends where it began. A disc has 48 corners.
+    /// Corners in order; the last corner of a box equals the first. A disc has 48 corners.
     pub points: Vec<Place>,
-    /// `true` for a box or a disc, which is solid inside; a wall has no thickness.
+    /// `true` for a box or a disc, whose inside is solid; a wall has no thickness.
     pub solid: bool,
     /// Roughness of the surface, from 0 to 1 as in `World`.
     pub rough: f64,
@@ -21,7 +21,7 @@ impl Outline {
         self.points.iter().zip(self.points.iter().skip(1)).map(move |(from, to)| (self, *from, *to))
     }
 
-    /// Returns `true` if `place` is inside, because a line from it crosses an odd number of sides.
+    /// Returns `true` if `place` is inside: a line from it crosses an odd number of sides.
     pub(crate) fn surrounds(&self, place: Place) -> bool {
         let crossed = self.segments().filter(|(_, from, to)| {
             let between = (from.y > place.y) != (to.y > place.y);

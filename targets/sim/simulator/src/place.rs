@@ -1,10 +1,10 @@
-//! A place on the floor.
+//! A position on the floor.
 
 use std::fmt;
 
 use mdle_runtime::{Meters, Pose};
 
-/// A place on the floor, in metres.
+/// A position on the floor, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// Coordinate along the first axis, in metres.

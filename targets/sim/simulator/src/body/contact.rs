@@ -1,4 +1,5 @@
-//! Contact of the body with obstacles: it slides along them, is pushed off them when it turns, and never overlaps them.
+//! Contact of the body with obstacles: the body slides along them, is pushed away when it turns, and never overlaps
+//! them.
 
 use mdle_runtime::{Meters, Pose, Radians};
 
@@ -6,15 +7,15 @@ use crate::footprint::{Contact, Footprint};
 use crate::place::Place;
 use crate::walls::Walls;
 
-/// Distance, in metres, by which a slide moves away from the surface, so that rounding errors do not move the body into
+/// Distance by which a slide moves away from the surface, in metres, so that rounding errors do not move the body into
 /// the surface.
 const LED_OFF: f64 = 1e-8;
 /// Maximum number of surfaces along which a step slides; a corner has two.
 const SLIDES: usize = 3;
 
-/// Returns the movement of `body` for the intended movement `way`: the whole movement if the way is free, otherwise the
-/// movement up to the contact and then along the surface. The step must be shorter than the body; at its end, the body
-/// overlaps nothing.
+/// Returns the movement of `body` for the intended movement `way`: the whole movement if the path is free, otherwise
+/// the movement up to the contact and then along the surface. The movement must be shorter than the body; at its end,
+/// the body overlaps no obstacle.
 pub(crate) fn slid(body: &Footprint, way: Place, walls: &Walls) -> Place {
     let at = body.at();
     let reach = libm::hypot(way.x, way.y) + LED_OFF;
@@ -35,8 +36,8 @@ pub(crate) fn slid(body: &Footprint, way: Place, walls: &Walls) -> Place {
     Place { x: here.x - at.x, y: here.y - at.y }
 }
 
-/// Returns `body` turned by `turn`. If a corner or side would turn into an obstacle, the body is pushed away by as much
-/// as the turn needs. If there is no room for that, the body does not turn.
+/// Returns `body` turned by `turn`. If a corner or side would turn into an obstacle, the body is pushed away by the
+/// distance that the turn needs. If there is no space for that, the body does not turn.
 pub(crate) fn turned(body: &Footprint, turn: Radians, walls: &Walls) -> Footprint {
     let Radians(theta) = body.pose.theta;
     let there = Footprint { pose: Pose { theta: Radians(theta + turn.0), ..body.pose }, ..*body };
@@ -45,7 +46,7 @@ pub(crate) fn turned(body: &Footprint, turn: Radians, walls: &Walls) -> Footprin
         return there;
     }
     let Some(normal) = walls.contact(body, reach).and_then(normal) else { return *body };
-    // Twice the way of a corner: the side that turns into the obstacle may slant.
+    // Twice the distance that a corner moves, because the side that turns into the obstacle may be slanted.
     let pushed = |part: f64| {
         let push = 2.0 * reach * part;
         moved(&there, Place { x: there.pose.x.0 + push * normal.x, y: there.pose.y.0 + push * normal.y })
@@ -67,8 +68,8 @@ fn normal(contact: Contact) -> Option<Place> {
     (length > 0.0).then(|| Place { x: x / length, y: y / length })
 }
 
-/// Returns the largest fraction of a step, to a millionth, after which the body is still free; 0 if it is not free at
-/// all.
+/// Returns the largest fraction of a step, to a millionth, after which the body is still free; 0 if no fraction is
+/// free.
 fn last_free(free: impl Fn(f64) -> bool) -> f64 {
     let (mut least, mut most) = (0.0, 1.0);
     for _ in 0..20 {

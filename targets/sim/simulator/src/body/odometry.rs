@@ -1,4 +1,4 @@
-//! Odometry: the path driven as the wheels measure it, and the errors of that measurement.
+//! Odometry: the motion that the wheels measure, and its errors.
 
 use mdle_runtime::{Meters, Pose, Radians};
 
@@ -6,7 +6,7 @@ use crate::model::Slip;
 use crate::noise::{Noise, Purpose};
 use crate::place::Place;
 
-/// The pose that the robot computes from the motion of its wheels, relative to the start pose.
+/// Pose that the robot computes from the motion of its wheels, relative to the start pose.
 #[derive(Debug, Clone)]
 pub(crate) struct Odometry {
     pub(crate) pose: Pose,

@@ -1,4 +1,4 @@
-//! Tests of the body: motion, stops, slides and odometry.
+//! Tests the body's motion, stops, slides and odometry.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -101,7 +101,7 @@ fn never_overlaps_a_wall_and_odometry_stays_true() {
             for _ in 0..5 {
                 body.advance(&input, 0.1, &walls);
                 assert!(walls.clearance(Place::of(&body.pose), 1.0) >= 0.205);
-                // It starts in the origin, so the two are the same numbers.
+                // The body starts at the origin, so both poses have the same coordinates.
                 assert_eq!(body.pose, body.odometry());
                 pressed += u32::from(touches(&body, &walls));
             }
@@ -117,7 +117,7 @@ fn slides_along_a_wall_that_it_meets_aslant() {
     body.pose.theta = Radians(0.5);
     body.advance(&twist(0.5, 0.0), 4.0, &wall);
     assert!(body.pose.y.0 <= 0.095 && body.pose.y.0 > 0.0949, "{:?}", body.pose);
-    // The wall takes the part of its speed that pushes.
+    // The wall stops only the part of the motion that is directed into it.
     assert!(body.pose.x.0 > 1.0, "{:?}", body.pose);
     assert_eq!(body.pressed(6, &wall), 0b10, "60 degrees to the left, where the wall is: {:?}", body.pose);
 }
@@ -173,7 +173,7 @@ fn nothing_is_passed_through_at_any_speed_and_period() {
     let mut random = Noise::of(7, Purpose::Ranges);
     let mut pressed = 0;
     for world in 0..60 {
-        // Walls with ends, wedges and boxes around the robot, some of them nearly touching.
+        // Walls with free ends, wedges and boxes around the robot, some of them nearly touching.
         let mut text = String::new();
         while text.lines().count() < 40 {
             let mut within = |most: f64| most * (2.0 * random.uniform() - 1.0);

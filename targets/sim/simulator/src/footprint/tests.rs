@@ -1,4 +1,4 @@
-//! Tests of discs and rectangles: distances, contacts and rays.
+//! Tests distances, contacts and rays of discs and rectangles.
 
 use mdle_runtime::Meters;
 

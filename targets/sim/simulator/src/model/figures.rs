@@ -1,4 +1,4 @@
-//! The figures of the bodies, with their sources.
+//! Numerical values of the bodies' models, with their sources.
 
 use mdle_runtime::{Nanos, Radians, SonarId};
 
@@ -8,7 +8,7 @@ use crate::footprint::Form;
 use super::{Drive, HALF_CONE, Hearing, Model, Order, Slip, Transducer};
 
 const INCH: f64 = 0.0254;
-/// The usual firing order of a Scout's sonars.
+/// Usual firing order of a Scout's sonars.
 const SCOUT_ORDER: [usize; 16] = [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8];
 /// Radius of a Scout's ring of sonars, in metres.
 const RING_RADIUS: f64 = 0.19;
@@ -25,7 +25,7 @@ pub(super) fn ideal() -> Model {
             wheel_base: 0.34519,
             fastest: 1.0,
             acceleration: 1.0,
-            // Tenths of an inch a second.
+            // A tenth of an inch per second.
             unit: 0.1 * INCH,
             slip: None,
         },
@@ -51,15 +51,15 @@ pub(super) fn ideal() -> Model {
     }
 }
 
-/// Returns the model of a Scout. A flat wall was measured to answer a Polaroid module up to 42° off its normal,
-/// an object that faces the module at any angle up to about half of that, and a thin cylinder up to less (Cao
-/// and Borenstein, 2002): both limits lie on an ellipse, 21² + 35² = 41². Ranges err by at most 3 cm, so the
-/// standard deviation is a third of that; their absolute error is at most 1 %.
+/// Returns the model of a Scout. In measurements, a Polaroid module heard a flat wall up to 42° off its normal, an
+/// object that faces the module up to about half of that angle off the axis, and a thin cylinder less far (Cao and
+/// Borenstein, 2002): both limits lie on an ellipse, 21² + 35² = 41². Ranges err by at most 3 cm, so the standard
+/// deviation is a third of that; their absolute error is at most 1 %.
 pub(super) fn scout() -> Model {
     let ideal = ideal();
     Model {
         drive: Drive {
-            // Two degrees and two parts in a hundred on a tour of 25 m.
+            // Two degrees and 2 % on a tour of 25 m.
             slip: Some(Slip { way: 0.01, turn: 0.005, bend: 0.0015, wander: 0.006 }),
             ..ideal.drive
         },
@@ -86,8 +86,8 @@ pub(super) fn scout() -> Model {
     }
 }
 
-/// Places, in millimetres and degrees, of the first twelve of the 24 sonars of the ATRV-mini of the University
-/// of Massachusetts, each with the sonar of the sixteen that it represents; the other twelve are their mirror
+/// Positions in millimetres, and axes in degrees, of the first twelve of the 24 sonars of the ATRV-mini of the
+/// University of Massachusetts, each with the paper's sonar to which it belongs; the other twelve are their mirror
 /// images.
 const ATRV_LEFT: [(f64, f64, f64, u8); 12] = [
     (258.17, 114.70, 0.0, 0),
@@ -131,12 +131,12 @@ pub(super) fn atrv() -> Model {
         hearing: Hearing {
             transducers: left.into_iter().chain(right).collect(),
             ring_radius: 0.28,
-            // Of the sonars 18° off it, 35 cm apart.
+            // Points heard by the two sonars at 18° from the wall's normal; these sonars are 35 cm apart.
             beside_apart: Some(0.33),
             most: 4.0,
-            // A count of the controller's clock.
+            // One count of the controller's clock.
             step: 1.0 / 1550.0,
-            // Four boards at once, six sonars on each, 30 ms apart.
+            // All four boards ping at once; each board fires its six sonars one after another, 30 ms apart.
             order: Some(Order {
                 groups: (0..6).map(|channel| vec![channel, channel + 6, channel + 12, channel + 18]).collect(),
                 gap: Nanos(30_000_000),

@@ -12,15 +12,15 @@ use super::sizes::MARGIN;
 
 /// Width of a chart, in pixels.
 const WIDTH: f64 = 960.0;
-/// Width of the names at the left, in pixels.
+/// Width of the column of names at the left, in pixels.
 const NAMES: f64 = 190.0;
-/// Maximum number of letters of a name.
+/// Maximum number of letters of a displayed name.
 const LETTERS_MOST: usize = 24;
 /// Height of a row of atoms, in pixels.
 const ROW: f64 = 22.0;
-/// Height of the curve of a signal, and the distance between two curves, in pixels.
+/// Height of a signal's curve, and vertical distance between two curves, in pixels.
 const CURVE: (f64, f64) = (84.0, 22.0);
-/// Minimum distance between two numbers of the time axis, in pixels.
+/// Minimum distance between two labels of the time axis, in pixels.
 const APART: f64 = 80.0;
 /// Maximum number of rows of atoms; all further atoms share the last row.
 const ROWS_MOST: usize = 24;
@@ -30,11 +30,11 @@ const ROWS_MOST: usize = 24;
 pub struct TimeChart {
     /// Title of the chart.
     pub title: String,
-    /// The atoms, by the text of their laws, with a row for each.
+    /// The atoms, one per row, by the text of their laws.
     pub atoms: Vec<String>,
-    /// The periods in which atoms ran: the number of the atom, the begin and the end.
+    /// Periods in which atoms ran: the number of the atom, the begin and the end.
     pub stays: Vec<(usize, Nanos, Nanos)>,
-    /// The signals, with a curve for each.
+    /// The signals, one curve each.
     pub signals: Vec<SignalCurve>,
     /// End of the run.
     pub end: Nanos,
@@ -70,13 +70,13 @@ impl TimeChart {
         format!("{document}\n")
     }
 
-    /// Returns the position of a time, in pixels from the left.
+    /// Returns the horizontal position of a time, in pixels from the left.
     fn at(&self, t: Nanos) -> f64 {
         let part = t.seconds() / self.end.seconds().max(1e-9);
         NAMES + (WIDTH - MARGIN - NAMES) * part
     }
 
-    /// Draws lines at round times, and the times below the bands.
+    /// Draws lines at round times, and labels with the times below the bands.
     fn ticks(&self, top: f64, axis: f64) -> Group {
         let least = self.end.seconds() * APART / (WIDTH - MARGIN - NAMES);
         let step = round_step(least.max(1e-3));
@@ -134,7 +134,7 @@ impl TimeChart {
     }
 }
 
-/// Returns a name of limited length.
+/// Returns `name`, shortened to the maximum length.
 fn shortened(name: &str) -> String {
     if name.chars().count() <= LETTERS_MOST {
         return name.to_owned();

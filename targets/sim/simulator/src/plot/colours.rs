@@ -1,22 +1,22 @@
-//! The colours of a plot on light and on dark pages. Consecutive atoms have colours that all people can
-//! distinguish, including people who do not see red or green.
+//! Colours of a plot on light and on dark pages. Consecutive atoms have colours that everybody can distinguish,
+//! including people who cannot see red or green.
 
 use std::fmt::Write as _;
 
-/// The colours of a picture.
+/// Colours of a picture.
 struct Palette {
     ink: &'static str,
     faint: &'static str,
     paper: &'static str,
     grid: &'static str,
-    /// Colour of the inside of boxes and discs.
+    /// Fill colour of boxes and discs.
     solid: &'static str,
     echo: &'static str,
     contact: &'static str,
     goal: &'static str,
-    /// Colour of the inside of a charger's symbol.
+    /// Fill colour of a charger's symbol.
     charge: &'static str,
-    /// The colours of the atoms, used in rotation, each with the colour of a number on it.
+    /// Colours of the atoms, used in rotation, each with the colour of a number drawn on it.
     atoms: [(&'static str, &'static str); COUNT],
 }
 
@@ -73,7 +73,7 @@ pub(super) fn class(kind: &str, atom: usize) -> String {
     format!("{kind}{}", atom % COUNT)
 }
 
-/// Returns the style sheet of a picture, light and dark.
+/// Returns the style sheet of a picture, for light and dark pages.
 pub(super) fn style() -> String {
     format!("\n{}@media (prefers-color-scheme: dark) {{\n{}}}\n", rules(&LIGHT), rules(&DARK))
 }
@@ -101,8 +101,8 @@ mod tests {
 
     type Rgb = [f64; 3];
 
-    /// Matrices that convert linear RGB to the colours that an eye sees: with normal sight, and without red, green or
-    /// blue cones (Machado, Oliveira and Fernandes, 2009, severity 1).
+    /// Matrices that convert linear RGB to the perceived colours: with normal sight, and without red, green or blue
+    /// cones (Machado, Oliveira and Fernandes, 2009, severity 1).
     const EYES: [[Rgb; 3]; 4] = [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
@@ -125,8 +125,8 @@ mod tests {
         times(&[0.2126, 0.7152, 0.0722], rgb)
     }
 
-    /// Converts a colour to lightness and two opponent colours (CIE 1976), in which distances are about as
-    /// people see them.
+    /// Converts a colour to lightness and two opponent colours (CIE 1976), in which distances correspond approximately
+    /// to perceived differences.
     fn lab(rgb: &Rgb) -> Rgb {
         let part = |row: Rgb, white: f64| {
             let part = times(&row, rgb) / white;

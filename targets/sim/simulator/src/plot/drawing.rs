@@ -17,13 +17,13 @@ use crate::place::Place;
 use crate::trail::{Companion, Trail};
 use crate::world::World;
 
-/// Distance, in pixels, between two points of the path driven that callouts avoid.
+/// Maximum distance, in pixels, between two points of the path driven that callouts avoid.
 const STEP: f64 = 6.0;
 
-/// Side of a square, in pixels, in which at most one echo is drawn.
+/// Side length of a square in which at most one echo is drawn, in pixels.
 const SQUARE: f64 = 8.0;
 
-/// Returns the plot of a trail on the floor of `world`, as SVG.
+/// Draws `trail` on the floor of `world` as an SVG picture.
 pub(crate) fn svg(world: &World, trail: &Trail) -> String {
     let layout = Layout::of(world, trail);
     let document = document(&layout, layout.height)
@@ -48,7 +48,7 @@ pub(super) fn document(layout: &Layout, height: f64) -> Document {
     document.add(Title::new(&layout.title.whole)).add(Style::new(style()))
 }
 
-/// Draws the echoes, at most one in a small square: more cannot be distinguished.
+/// Draws the echoes, at most one in a small square, because more could not be distinguished.
 fn echoes(layout: &Layout, trail: &Trail) -> Path {
     let shown = trail.echoes.iter().filter(|place| layout.shows_any([**place].into_iter()));
     let mut squares = BTreeSet::new();
@@ -58,7 +58,7 @@ fn echoes(layout: &Layout, trail: &Trail) -> Path {
     path.set("class", "echo").set("stroke-opacity", 0.55).set("stroke-width", 1.6).set("stroke-linecap", "round")
 }
 
-/// Draws the path driven by each atom of the plan's text, with all passes of the atom in one SVG path.
+/// Draws the path driven by each atom of the plan's text; one SVG path contains all passes of the atom.
 fn way(layout: &Layout, trail: &Trail) -> Group {
     let data = |way: &[Place]| through(simplified(way.iter().map(|place| layout.at(*place))));
     let ways = &trail.ways;
@@ -90,13 +90,13 @@ pub(super) fn body(layout: &Layout, pose: &Pose, form: Form, class: &str) -> Gro
     group.add(line(centre, front))
 }
 
-/// Draws a cross at each place where the body touched an obstacle.
+/// Draws a cross at each position of a contact with an obstacle.
 fn contacts(layout: &Layout, trail: &Trail) -> Group {
     let touched = trail.contacts.iter().map(|(place, _)| cross(layout.at(*place)));
     touched.fold(Group::new(), Group::add)
 }
 
-/// Draws a callout for each atom of the plan's text, at the place where the atom first began.
+/// Draws a callout for each atom of the plan's text, at the position where the atom first began.
 fn marks(layout: &Layout, trail: &Trail) -> Group {
     let atoms = || trail.ways.atoms.iter().take(ROWS_MOST);
     let dots: Vec<Pixel> = atoms().map(|atom| layout.at(atom.place)).collect();

@@ -1,4 +1,4 @@
-//! A film of a run: its speed, the atoms that run, and the animations, which all repeat together.
+//! The film of a run: its speed, the atoms that run, and the SVG animations, which all repeat with the same period.
 
 use mdle_runtime::Nanos;
 use svg::node::element::{Animate, AnimateTransform};
@@ -10,30 +10,30 @@ use crate::trail::{Mark, Trail};
 
 /// Maximum duration of the film, in seconds, without the pause at the end.
 const SHOWN_MOST: f64 = 20.0;
-/// Maximum number of places of all paths driven, about 200 m, for a film that draws each place.
+/// Maximum number of recorded positions (about 200 m of path) for which the film draws every position.
 const PLACES_MOST: usize = 20_000;
-/// Maximum number of runs of atoms of which all are shown. If there are more, a run that begins and ends between two
-/// frames is left out.
+/// Maximum number of atom runs for which every run is drawn. Beyond it, runs that begin and end between two frames are
+/// omitted.
 const ACTS_MOST: usize = 1000;
-/// Pause at the end, in seconds.
+/// Pause at the end of the film, in seconds.
 const REST: f64 = 2.5;
 
 /// A film of a run.
 pub(super) struct Film<'f> {
     /// Frames of the run.
     pub(super) frames: &'f [Frame],
-    /// The atoms that run in the film, in order.
+    /// Runs of atoms in the film, in order.
     pub(super) acts: Vec<Act>,
     /// Factor by which the film is faster than the run.
     pub(super) times: f64,
-    /// `true` if the paths driven are short enough to be written place by place.
+    /// `true` if the path driven is short enough to be drawn position by position.
     smooth: bool,
 }
 
 /// A run of an atom in the film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Act {
-    /// Index of the atom among those that began; `None` before the first.
+    /// Index of the run among the trail's marks; `None` before the first atom.
     pub(super) mark: Option<usize>,
     pub(super) from: Nanos,
     pub(super) to: Nanos,
@@ -43,7 +43,7 @@ pub(super) struct Act {
 }
 
 impl<'f> Film<'f> {
-    /// Returns the film of these frames of a trail.
+    /// Returns the film of these frames of `trail`.
     pub(super) fn of(frames: &'f [Frame], trail: &Trail) -> Self {
         let marks = &trail.ways.marks;
         let mut acts: Vec<Act> = Vec::new();
@@ -58,7 +58,7 @@ impl<'f> Film<'f> {
                 acts.push(act(None, frame.t));
             }
             if marks.len() > ACTS_MOST {
-                // The last alone of those that have begun.
+                // Only the last of the runs that have begun since the previous frame.
                 acts.extend(newest(marks, before, begun).map(|(number, mark)| act(Some(number), mark.t)));
             } else {
                 acts.extend((before..begun).filter_map(|mark| Some(act(Some(mark), marks.get(mark)?.t))));
@@ -67,7 +67,7 @@ impl<'f> Film<'f> {
                 (act.to, act.last) = (frame.t, number);
             }
         }
-        // Each ends where the next begins, and its last moment is the first of that.
+        // Each act ends where the next one begins, and shares that frame with it.
         let nexts: Vec<(Nanos, usize)> = acts.iter().skip(1).map(|next| (next.from, next.first)).collect();
         for (act, next) in acts.iter_mut().zip(nexts) {
             (act.to, act.last) = next;
@@ -77,8 +77,8 @@ impl<'f> Film<'f> {
         Self { frames, acts, times: round_step((seconds / SHOWN_MOST).max(1.0)), smooth }
     }
 
-    /// Returns the atom that runs in an act, by its position in the list of atoms; `None` before the first atom, or if
-    /// the act is the remainder of a run with too many passes.
+    /// Returns the atom that runs in an act, by its index in the list of atoms; `None` before the first atom, or if the
+    /// act combines all passes beyond the maximum number.
     pub(super) fn atom(act: &Act, trail: &Trail) -> Option<usize> {
         act.mark.and_then(|mark| trail.ways.marks.get(mark))?.atom
     }
@@ -88,8 +88,8 @@ impl<'f> Film<'f> {
         self.frames.get(act.first..=act.last).unwrap_or_default()
     }
 
-    /// Returns the path driven in an act, followed by the paths of the atoms left out after it; `None` before the first
-    /// atom, or if all paths together are too long to be written place by place.
+    /// Returns the path driven in an act, followed by the paths of the runs omitted after it; `None` before the first
+    /// atom, or if the whole path is too long to be drawn position by position.
     pub(super) fn way(&self, act: &Act, trail: &Trail) -> Option<Vec<Place>> {
         let first = act.mark?;
         let next = self.acts.get(self.acts.partition_point(|other| other.mark <= act.mark)).and_then(|next| next.mark);
@@ -127,14 +127,14 @@ impl<'f> Film<'f> {
             .fold(Animate::new().set("attributeName", attribute), |animate, (name, value)| animate.set(name, value))
     }
 
-    /// Returns the animation of a movement that goes smoothly through these values.
+    /// Returns the animation of a transformation that changes smoothly through these values.
     pub(super) fn transform(&self, kind: &str, values: impl Iterator<Item = (Nanos, String)>) -> AnimateTransform {
         let animate = AnimateTransform::new().set("attributeName", "transform").set("type", kind);
         self.smooth(values).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
     }
 
-    /// Returns the animation of an attribute that has each of these values from its time on; the first value
-    /// also applies before its time.
+    /// Returns the animation of an attribute that takes each of these values from its time on; the first value also
+    /// applies before its time.
     pub(super) fn switch(&self, attribute: &str, values: impl Iterator<Item = (Nanos, String)>) -> Animate {
         let mut keyed: Vec<(f64, String)> = values.map(|(t, value)| (self.key(t), value)).collect();
         if let Some(first) = keyed.first_mut() {
@@ -144,7 +144,7 @@ impl<'f> Film<'f> {
         self.attributes(&keyed).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
     }
 
-    /// Returns an animation that shows an element from one time on, until another time if `to` is given.
+    /// Returns an animation that shows an element from the time `from`, until the time `to` if it is given.
     pub(super) fn visible(&self, from: Nanos, to: Option<Nanos>) -> Animate {
         let before = (self.key(from) > 0.0).then(|| (Nanos::ZERO, "hidden".to_owned()));
         let behind = to.map(|to| (to, "hidden".to_owned()));
@@ -153,7 +153,7 @@ impl<'f> Film<'f> {
 
     fn smooth(&self, values: impl Iterator<Item = (Nanos, String)>) -> [(&'static str, String); 4] {
         let mut keyed: Vec<(f64, String)> = values.map(|(t, value)| (self.key(t), value)).collect();
-        // At rest before the first of them and after the last.
+        // The values are constant before the first time and after the last.
         if let (Some((_, first)), Some((_, last))) = (keyed.first().cloned(), keyed.last().cloned()) {
             keyed.insert(0, (0.0, first));
             keyed.push((1.0, last));
@@ -174,14 +174,14 @@ impl<'f> Film<'f> {
     }
 }
 
-/// Returns the last mark from `before` up to, but not including, `begun`, with its number; `None` if there is no mark
-/// in this range.
+/// Returns the last mark from `before` up to, but not including, `begun`, with its number; `None` if the range is
+/// empty.
 fn newest(marks: &[Mark], before: usize, begun: usize) -> Option<(usize, &Mark)> {
     let number = begun.checked_sub(1).filter(|number| *number >= before)?;
     Some((number, marks.get(number)?))
 }
 
-/// Returns the values, without each value that equals the previous value.
+/// Returns the values, omitting each value that equals the previous one.
 pub(super) fn changes<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
     let mut last = None;
     values.filter(move |(_, value)| last.replace(value.clone()).as_ref() != Some(value))

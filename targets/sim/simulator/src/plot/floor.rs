@@ -10,13 +10,13 @@ use crate::outline::Outline;
 use crate::place::Place;
 use crate::world::World;
 
-/// Minimum distance between two numbers of an axis, in pixels.
+/// Minimum distance between two labels of an axis, in pixels.
 const APART: f64 = 50.0;
 
-/// Name of the region to which everything on the floor is clipped.
+/// Name of the region to which all drawings on the floor are clipped.
 const REGION: &str = "floor";
 
-/// Returns the background of a picture of this height, its title, and the axes of its floor.
+/// Returns the background of a picture of this height, with its title and the axes of its floor.
 pub(super) fn drawn(layout: &Layout, world: &World, height: f64) -> Group {
     let background = Rectangle::new().set("width", layout.width()).set("height", height).set("class", "paper");
     let region = ClipPath::new().set("id", REGION).add(
@@ -34,7 +34,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, height: f64) -> Group {
         .add(clipped().add(walls(layout, world)))
 }
 
-/// Returns a group that is drawn only inside the floor that is shown.
+/// Returns a group that is clipped to the visible part of the floor.
 pub(super) fn clipped() -> Group {
     Group::new().set("clip-path", format!("url(#{REGION})"))
 }
@@ -72,15 +72,14 @@ fn multiples((least, most): (f64, f64), step: f64) -> impl Iterator<Item = f64> 
     (first..=last).map(move |times| times as f64 * step)
 }
 
-/// Returns a number for an axis, without unnecessary zeros.
+/// Formats a number for an axis, without unnecessary zeros.
 fn number(value: f64, step: f64) -> String {
     let places = (-libm::floor(libm::log10(step * (1.0 + 1e-9)))).clamp(0.0, 9.0) as usize;
-    // Adding zero makes a negative zero positive.
+    // Adding zero turns a negative zero into a positive one.
     format!("{:.places$}", libm::round(value / step) * step + 0.0)
 }
 
-/// Draws a charger: the circle in which the centre of a robot has to be, with a flash of lightning in the
-/// middle.
+/// Draws a charger: the circle in which the centre of a robot has to be, with a lightning symbol in the middle.
 pub(super) fn socket(circle: impl IntoIterator<Item = Pixel>, (x, y): Pixel) -> Group {
     let flash = format!("M{} {}l-5 9h4l-3 7l8 -10h-4l4 -6z", tenths(x + 1.0), tenths(y - 8.0));
     let flash = Path::new().set("d", flash).set("class", "ink charge").set("stroke-width", 1);
@@ -105,7 +104,7 @@ fn walls(layout: &Layout, world: &World) -> Group {
     if let Some(charger) = &world.charger {
         group = group.add(socket(charger.circle().map(|place| layout.at(place)), layout.at(Place::of(&charger.pose))));
     }
-    // Few paths for all outlines: a map has many, and viewers draw few long paths faster than many short ones.
+    // Combines all outlines in few paths: a map has many, and viewers draw few long paths faster than many short ones.
     let (contours, outlines) = world.outlines.split_at(world.contours.min(world.outlines.len()));
     let (boxes, walls): (Vec<&Outline>, Vec<&Outline>) = outlines.iter().partition(|outline| outline.solid);
     for (outlines, class) in [(contours.iter().collect(), "ink solid"), (boxes, "ink solid"), (walls, "ink")] {

@@ -4,9 +4,9 @@ use std::f64::consts::TAU;
 
 use super::shapes::{Pixel, RADIUS};
 
-/// Radius of the dot at the place itself, in pixels.
+/// Radius of the dot at the labelled position, in pixels.
 pub(super) const DOT: f64 = 3.0;
-/// Number of directions that are tried around a place.
+/// Number of directions that are tried around a dot.
 const DIRECTIONS: u8 = 16;
 /// Distances that are tried, in pixels, nearest first.
 const DISTANCES: [f64; 6] = [22.0, 36.0, 50.0, 66.0, 84.0, 104.0];
@@ -16,9 +16,9 @@ const APART: f64 = 3.0;
 /// A rectangle: from left to right, and from top to bottom.
 pub(super) type Room = ((f64, f64), (f64, f64));
 
-/// Returns the positions of the labels of the `dots`, in order. A label is inside `room` and clear of all dots and of
-/// the labels before it; if possible, it is also clear of the `lines`, which are given by points no farther apart than
-/// the width of a label.
+/// Returns the positions of the labels of `dots`, in order. A label is inside `room`, and overlaps no dot and no
+/// earlier label. If possible, it also overlaps none of `lines`, which are given by points no farther apart than the
+/// width of a label.
 pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bottom)): Room) -> Vec<Pixel> {
     let mut labels: Vec<Pixel> = Vec::with_capacity(dots.len());
     for dot in dots {
@@ -36,11 +36,11 @@ pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bott
     labels
 }
 
-/// Returns possible places of a label, best first.
+/// Returns candidate positions of a label, best first.
 fn around((x, y): Pixel) -> impl Iterator<Item = Pixel> {
     DISTANCES.into_iter().flat_map(move |distance| {
         (0..DIRECTIONS).map(move |direction| {
-            // From the upper right round.
+            // Begins at the upper right.
             let (sin, cos) = libm::sincos(TAU * (f64::from(direction) / f64::from(DIRECTIONS) + 0.125));
             (x + cos * distance, y - sin * distance)
         })

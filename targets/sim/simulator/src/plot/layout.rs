@@ -1,4 +1,4 @@
-//! The sizes of a plot and the positions of its parts, in pixels. Both axes have the same scale.
+//! The layout of a plot: sizes and positions of its parts, in pixels. Both axes have the same scale.
 
 use super::rows::{self, Row};
 use super::shapes::Pixel;
@@ -11,11 +11,11 @@ use crate::world::World;
 
 /// Maximum width and height of the floor in a plot, in pixels.
 const FLOOR_MOST: (f64, f64) = (1080.0, 860.0);
-/// Minimum width and height of the floor in a plot, in pixels, so that its axes have room for their numbers.
+/// Minimum width and height of the floor in a plot, in pixels, so that there is space for the labels of the axes.
 const FLOOR_LEAST: f64 = 160.0;
 /// Maximum scale of a plot, in pixels per metre.
 const SCALE_MOST: f64 = 220.0;
-/// Height of the numbers below the floor, in pixels.
+/// Height of the labels below the floor, in pixels.
 pub(super) const BELOW: f64 = 44.0;
 /// Height of a line of the legend, in pixels.
 pub(super) const LINE: f64 = 22.0;
@@ -23,7 +23,7 @@ pub(super) const LINE: f64 = 22.0;
 pub(super) const KEY: usize = 9;
 /// Maximum number of symbols of moving objects.
 const SIGNS: usize = 2;
-/// Minimum width of a legend, in pixels, which its symbols need.
+/// Minimum width of a legend, which its symbols need, in pixels.
 const LEGEND_LEAST: f64 = 170.0;
 
 /// The sizes of a plot.
@@ -34,19 +34,19 @@ pub(super) struct Layout {
     /// Scale, in pixels per metre.
     pub(super) scale: f64,
     pub(super) title: Title,
-    /// Height of the title, with the margin above it, in pixels.
+    /// Height of the title, including the margin above it, in pixels.
     pub(super) top: f64,
     /// Width of the part that contains the floor and its axes, in pixels.
     pub(super) chart: f64,
     /// Width of the legend, in pixels.
     pub(super) legend: f64,
     pub(super) height: f64,
-    /// The atoms as the legend lists them.
+    /// Atoms in the order of the legend.
     pub(super) rows: Vec<Row>,
 }
 
 impl Layout {
-    /// Returns the layout that shows the whole path driven and the room around it.
+    /// Returns the layout that shows the whole path driven and the floor around it.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
         let View { x, y } = View::of(world, trail);
         let scale = (FLOOR_MOST.0 / (x.1 - x.0)).min(FLOOR_MOST.1 / (y.1 - y.0)).min(SCALE_MOST);
@@ -61,7 +61,8 @@ impl Layout {
         let top = MARGIN + title.height();
         let listed = (rows.len() + KEY + SIGNS.min(world.things.len())) as f64;
         let height = (top + high + MARGIN + BELOW).max(top + MARGIN + (listed + 1.0) * LINE);
-        // A legend that is higher than the floor must not stretch it: there is more of the floor above and below.
+        // If the legend is higher than the floor, the plot shows more of the floor above and below instead of
+        // stretching it.
         let more = ((height - top - MARGIN - BELOW) / scale - (y.1 - y.0)) / 2.0;
         let y = (y.0 - more, y.1 + more);
         Self { view: View { x, y }, scale, title, top, chart, legend, height, rows }
@@ -73,7 +74,7 @@ impl Layout {
         (MARGIN + LEFT + (place.x - x.0) * self.scale, self.top + (y.1 - place.y) * self.scale)
     }
 
-    /// Returns `true` if something between these places may be visible.
+    /// Returns `true` if an object between these places may be visible.
     pub(super) fn shows_any(&self, places: impl Iterator<Item = Place>) -> bool {
         let overlaps = |one: (f64, f64), other: (f64, f64)| one.0 <= other.1 && other.0 <= one.1;
         let (x, y): (Vec<f64>, Vec<f64>) = places.map(|place| (place.x, place.y)).unzip();
@@ -85,7 +86,7 @@ impl Layout {
         self.chart + self.legend
     }
 
-    /// Returns the lower end of the floor, where the axis is, in pixels.
+    /// Returns the vertical position of the floor's lower edge, where the axis is, in pixels.
     pub(super) fn bottom(&self) -> f64 {
         self.height - MARGIN - BELOW
     }
@@ -95,23 +96,23 @@ impl Layout {
         self.top + LINE * (number as f64 + 0.5)
     }
 
-    /// Returns the vertical middle of an atom's line in the legend; `atom` is the atom's position among those that
-    /// began.
+    /// Returns the vertical middle of an atom's line in the legend; `atom` is the index of the atom in the order of
+    /// first beginnings.
     pub(super) fn line_of(&self, atom: usize) -> f64 {
-        // Below the heads of the columns; those that are not listed share the last line.
+        // The first line has the column heads; atoms that are not listed share the last line.
         self.line(1 + atom.min(self.rows.len().saturating_sub(1)))
     }
 }
 
-/// Returns the part of a range that is shown, and its size in pixels. Where the minimum size requires it, the part is
-/// larger than the range.
+/// Returns the part of a range that is shown, and its size in pixels. The part is larger than the range if the minimum
+/// size requires it.
 fn shown((least, most): (f64, f64), scale: f64) -> ((f64, f64), f64) {
     let pixels = libm::ceil(((most - least) * scale).max(FLOOR_LEAST));
     let more = (pixels / scale - (most - least)) / 2.0;
     ((least - more, most + more), pixels)
 }
 
-/// Returns the step between the numbers of an axis: one, two or five times a power of ten, at least `least`.
+/// Returns the step between the labels of an axis: one, two or five times a power of ten, at least `least`.
 pub(super) fn round_step(least: f64) -> f64 {
     let power = libm::pow(10.0, libm::floor(libm::log10(least)));
     let step = [1.0, 2.0, 5.0].into_iter().map(|digit| digit * power).find(|step| *step >= least * (1.0 - 1e-9));

@@ -37,7 +37,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
         legend = figures.fold(legend, |legend, (figure, x)| legend.add(text(figure, (x, y), "end")));
     }
     let signs = signs(layout, left + RADIUS, world, trail);
-    // A free line above them, if there is something to be free of.
+    // An empty line separates the symbols from the atoms, if there are atoms.
     let first = layout.rows.len() + if layout.rows.is_empty() { 0 } else { 2 };
     for (number, (sign, meaning)) in (first..).zip(signs) {
         let y = layout.line(number);
@@ -47,7 +47,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     legend.add(scale_bar(layout))
 }
 
-/// Returns the symbols that occur in the picture, drawn around height 0, each with its meaning.
+/// Returns the symbols that occur in the picture, each drawn around height 0, with its meaning.
 fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &'static str)> {
     let body = |class| Group::new().add(circle((x, 0.0), 7.0).set("fill", "none").set("class", class));
     let mut signs = vec![(body("faint"), "start"), (body("ink"), "end")];
@@ -70,7 +70,7 @@ fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &
     signs
 }
 
-/// Draws a scale bar, whose length is a round number of metres.
+/// Draws a scale bar whose length is a round number of metres.
 fn scale_bar(layout: &Layout) -> Group {
     let metres = round_step(BAR_MOST / layout.scale * 0.4);
     let (left, y) = (layout.chart, layout.height - MARGIN - 10.0);

@@ -1,8 +1,7 @@
-//! Draws the moving picture of a run: the path grows as it was driven, the robot drives along it, and the running atom
-//! is named.
+//! Draws the moving picture of a run: the path grows as the robot drives along it, and the running atom is named.
 //!
-//! Everything repeats together, after a pause. A viewer without animation shows the end of the run; a viewer that runs
-//! scripts also shows the time, a button to pause and a strip to seek.
+//! All animations repeat together, after a pause. A viewer without animation shows the end of the run; a viewer that
+//! runs scripts also shows the time, a pause button and a strip to seek.
 
 use mdle_runtime::{Pose, Radians};
 use svg::node::element::{Group, Path, Rectangle, Script};
@@ -21,10 +20,10 @@ use crate::place::Place;
 use crate::trail::Trail;
 use crate::world::World;
 
-/// Script that shows the time, pauses and seeks. It has no characters that XML escapes.
+/// Script that shows the time, pauses and seeks. It contains no characters that XML escapes.
 const SCRIPT: &str = include_str!("film.js");
 
-/// Returns the moving picture of a trail on the floor of `world`.
+/// Draws the moving picture of `trail` on the floor of `world`.
 pub(crate) fn animated(world: &World, trail: &Trail) -> String {
     let layout = Layout::of(world, trail);
     let frames = trail.frames.as_ref().map(Frames::all).unwrap_or_default();
@@ -51,12 +50,12 @@ fn ways(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
         let frames = film.of_act(act);
         let moments: Vec<Pixel> = frames.iter().map(|frame| layout.at(Place::of(&frame.pose))).collect();
         let at_moments = lengths(&moments);
-        // The way itself is smoother than its moments.
+        // The recorded path has more positions than the frames.
         let driven: Option<Vec<Pixel>> =
             film.way(act, trail).map(|places| places.into_iter().map(|place| layout.at(place)).collect());
         let driven = simplified(driven.unwrap_or(moments));
         let Some(length) = lengths(&driven).last().copied().filter(|length| *length >= 0.5) else { return group };
-        // A dash longer than the way, which comes in from before its beginning, and a gap as long behind it.
+        // A dash longer than the path, shifted in from before its beginning, and a gap of the same length after it.
         let dash = libm::ceil(length) + 1.0;
         let left = |part: f64| format!("{}", tenths(dash - length * part));
         let grows = match at_moments.last().filter(|all| **all > 0.0) {
@@ -72,7 +71,7 @@ fn ways(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     })
 }
 
-/// Returns the length of a line up to each of its places.
+/// Returns the length of a line up to each of its points.
 fn lengths(pixels: &[Pixel]) -> Vec<f64> {
     let steps = pixels.iter().zip(pixels.iter().skip(1));
     let steps = steps.scan(0.0, |length, (one, other)| {
@@ -105,20 +104,20 @@ fn contacts(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     })
 }
 
-/// Draws the body, which drives and turns.
+/// Draws the body, with animations of its position and heading.
 fn robot(layout: &Layout, film: &Film<'_>, trail: &Trail) -> Group {
     let at = |pose: &Pose| {
         let (x, y) = layout.at(Place::of(pose));
         format!("{} {}", tenths(x), tenths(y))
     };
     let places = film.frames.iter().map(|frame| (frame.t, at(&frame.pose)));
-    // Headings go on beyond a full turn, so that what is between two of them is the shorter way.
+    // Headings are unwrapped beyond a full turn, so that the animation turns the shorter way.
     let mut heading: Option<Radians> = None;
     let headings = film.frames.iter().map(|frame| {
         let before = heading.unwrap_or(frame.pose.theta);
         let now = Radians(before.0 + Radians(frame.pose.theta.0 - before.0).wrapped().0);
         heading = Some(now);
-        // Heights count downwards in a picture, and so do angles.
+        // In a picture, the vertical axis points down, which inverts angles.
         (frame.t, format!("{}", tenths(-now.degrees())))
     });
     let turns = film.transform("rotate", headings);
@@ -139,7 +138,7 @@ fn robot(layout: &Layout, film: &Film<'_>, trail: &Trail) -> Group {
     moved.set("stroke-width", 1.8).add(turned).add(drives)
 }
 
-/// Draws the highlight of the line in the legend whose atom runs.
+/// Draws the highlight of the running atom's line in the legend.
 fn highlight(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Rectangle {
     let y = |atom: Option<usize>| format!("{}", tenths(layout.line_of(atom.unwrap_or(0)) - LINE / 2.0));
     let values = film.acts.iter().map(|act| (act.from, y(Film::atom(act, trail))));

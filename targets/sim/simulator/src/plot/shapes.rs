@@ -1,10 +1,10 @@
-//! Elements of SVG for the plots, with coordinates in tenths of a pixel.
+//! SVG elements for the plots, with coordinates in tenths of a pixel.
 
 use svg::node::element::{Circle, Group, Line, Path, Text};
 
 use super::colours;
 
-/// A place in a drawing, in pixels.
+/// Position in a drawing, in pixels.
 pub(super) type Pixel = (f64, f64);
 
 /// Rounds to a tenth of a pixel; the result is never a negative zero.
@@ -20,18 +20,18 @@ pub(super) fn line((x1, y1): Pixel, (x2, y2): Pixel) -> Line {
     Line::new().set("x1", tenths(x1)).set("y1", tenths(y1)).set("x2", tenths(x2)).set("y2", tenths(y2))
 }
 
-/// Returns a line of text whose middle is at this height; `anchor` is `start`, `middle` or `end`.
+/// Returns a line of text that is vertically centred at this height; `anchor` is `start`, `middle` or `end`.
 pub(super) fn text(content: &str, (x, y): Pixel, anchor: &str) -> Text {
     let text = Text::new(content).set("x", tenths(x)).set("y", tenths(y)).set("dy", "0.35em");
     if anchor == "start" { text } else { text.set("text-anchor", anchor) }
 }
 
-/// Returns an open line through these places.
+/// Returns an open line through these points.
 pub(super) fn polyline<P: IntoIterator<Item = Pixel>>(pixels: P) -> Path {
     Path::new().set("d", through(pixels)).set("fill", "none")
 }
 
-/// Returns the path data of a line through these places: the start, then relative steps.
+/// Returns the path data of a line through these points: the start, then relative steps.
 pub(super) fn through(pixels: impl IntoIterator<Item = Pixel>) -> String {
     let mut data = String::new();
     let mut last: Option<(i64, i64)> = None;
@@ -47,7 +47,7 @@ pub(super) fn through(pixels: impl IntoIterator<Item = Pixel>) -> String {
     data
 }
 
-/// Returns the path data of a dot at each of these places, for lines with round ends.
+/// Returns the path data of a dot at each of these points, for lines with round ends.
 pub(super) fn dots(pixels: impl IntoIterator<Item = Pixel>) -> String {
     let mut data = String::new();
     let mut last = (0, 0);
@@ -63,19 +63,19 @@ fn whole((x, y): Pixel) -> (i64, i64) {
     (libm::round(x * 10.0) as i64, libm::round(y * 10.0) as i64)
 }
 
-/// Writes two numbers in tenths; no space is needed before a minus sign.
+/// Formats two numbers given in tenths; no space is needed before a minus sign.
 fn pair((x, y): (i64, i64)) -> String {
     let (x, y) = (x as f64 / 10.0, y as f64 / 10.0);
     if y < 0.0 { format!("{x}{y}") } else { format!("{x} {y}") }
 }
 
-/// Maximum distance, in pixels, of an omitted point from the simplified line.
+/// Maximum distance of an omitted point from the simplified line, in pixels.
 const BESIDE: f64 = 0.2;
 
-/// Returns the places that are needed to draw a line that looks the same.
+/// Omits the points that are not needed to draw a line that looks the same.
 pub(super) fn simplified(pixels: impl IntoIterator<Item = Pixel>) -> Vec<Pixel> {
     let mut kept: Vec<Pixel> = Vec::new();
-    // The places since the last one kept.
+    // Points since the last kept point.
     let mut since: Vec<Pixel> = Vec::new();
     for pixel in pixels {
         let Some(anchor) = kept.last().copied() else {
@@ -93,11 +93,10 @@ pub(super) fn simplified(pixels: impl IntoIterator<Item = Pixel>) -> Vec<Pixel> 
     kept
 }
 
-/// Maximum number of points that one straight line replaces, since the time grows with the square of this
-/// number.
+/// Maximum number of points that one straight line replaces, since the time grows with the square of this number.
 const LONGEST: usize = 500;
 
-/// Returns the distance of a place from a line between two others.
+/// Returns the distance of a point from the line through two other points.
 fn off((x, y): Pixel, (x1, y1): Pixel, (x2, y2): Pixel) -> f64 {
     let (dx, dy) = (x2 - x1, y2 - y1);
     let length = dx * dx + dy * dy;
@@ -105,12 +104,12 @@ fn off((x, y): Pixel, (x1, y1): Pixel, (x2, y2): Pixel) -> f64 {
     libm::hypot(x - x1 - along * dx, y - y1 - along * dy)
 }
 
-/// The radius of a label, in pixels.
+/// Radius of a label, in pixels.
 pub(super) const RADIUS: f64 = 10.0;
 
-/// Returns the number of an atom in a disc of its colour.
+/// Draws the number of an atom in a disc of its colour.
 pub(super) fn badge(at: Pixel, number: &str, atom: usize) -> Group {
-    // Long numbers in smaller letters.
+    // Long numbers have smaller letters.
     let size = match number.len() {
         0..=2 => 12,
         3 => 9,
@@ -121,7 +120,7 @@ pub(super) fn badge(at: Pixel, number: &str, atom: usize) -> Group {
     Group::new().add(disc).add(text)
 }
 
-/// Returns a cross that marks a contact.
+/// Draws a cross that marks a contact.
 pub(super) fn cross((x, y): Pixel) -> Path {
     let data = format!("M{} {}l8 8m0-8l-8 8", tenths(x - 4.0), tenths(y - 4.0));
     Path::new().set("d", data).set("fill", "none").set("class", "contact").set("stroke-width", 2.5)
@@ -157,7 +156,7 @@ mod tests {
         for corner in [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.1)] {
             assert!(corners.iter().any(|at| libm::hypot(at.0 - corner.0, at.1 - corner.1) < 0.5), "{corner:?}");
         }
-        // There and back is not a straight line from the start to the start.
+        // A line that returns to its start must keep its turning point.
         assert_eq!(simplified([(0.0, 0.0), (5.0, 0.0), (9.0, 0.0), (5.0, 0.0), (0.0, 0.0)]).len(), 3);
     }
 

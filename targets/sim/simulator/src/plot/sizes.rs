@@ -1,8 +1,8 @@
-//! The sizes that all parts of a plot share, in pixels.
+//! Sizes that all parts of a plot share, in pixels.
 
 /// Margin around the whole plot, in pixels.
 pub(super) const MARGIN: f64 = 18.0;
-/// Width of the numbers to the left of the floor, in pixels.
+/// Width of the labels to the left of the floor, in pixels.
 pub(super) const LEFT: f64 = 52.0;
 /// Size of letters in the legend, in pixels.
 pub(super) const LETTERS: u32 = 14;

@@ -1,4 +1,4 @@
-//! Draws the strip below a moving picture: the running atom, and the time line in the colours of the atoms.
+//! Draws the strip below a moving picture: the running atom, and the timeline in the colours of the atoms.
 
 use mdle_runtime::Nanos;
 use svg::node::element::{Group, Path, Rectangle, TSpan, Text};
@@ -12,16 +12,16 @@ use super::shapes::{badge, line, polyline, tenths, text};
 use super::sizes::{LEFT, LETTERS, MARGIN};
 use crate::trail::Trail;
 
-/// Height of the part below the floor, in pixels: the running atom and the time.
+/// Height of the strip below the floor, with the running atom and the time, in pixels.
 pub(super) const STRIP: f64 = 84.0;
-/// Half the height of the line of time, in pixels.
+/// Half the height of the timeline, in pixels.
 const HALF: f64 = 5.0;
-/// Minimum distance between two numbers of the time line, in pixels.
+/// Minimum distance between two labels of the timeline, in pixels.
 const APART: f64 = 70.0;
 /// Half the height of the button's symbols, in pixels.
 const BUTTON: f64 = 9.0;
 
-/// Returns the strip of a film.
+/// Draws the strip of a film.
 pub(super) fn strip(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     let (left, right) = (MARGIN + LEFT, layout.width() - MARGIN);
     let (above, middle) = (layout.height + 4.0, layout.height + 36.0);
@@ -29,7 +29,8 @@ pub(super) fn strip(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     let values = film.frames.iter().map(|frame| (frame.t, format!("{} 0", tenths(at(frame.t)))));
     let cursor = polyline([(0.0, middle - 10.0), (0.0, middle + 10.0)]).set("class", "ink").set("stroke-width", 2.5);
     let cursor = cursor.set("transform", format!("translate({} 0)", tenths(right)));
-    // The script finds out by these what time a pixel is; the area that takes a pointer is higher than the line.
+    // The script uses these attributes to convert pixels to times; the area that accepts a pointer is higher than the
+    // line.
     let area = Rectangle::new().set("x", left).set("y", middle - 14.0).set("width", tenths(right - left));
     let line = Group::new()
         .set("class", "strip")
@@ -51,7 +52,7 @@ pub(super) fn strip(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
         .add(button((left - 22.0, middle)))
 }
 
-/// Draws the time line, with each run of an atom in the colour of the atom.
+/// Draws the timeline, with each run of an atom in the atom's colour.
 fn times(trail: &Trail, film: &Film<'_>, middle: f64, at: impl Fn(Nanos) -> f64) -> Group {
     let mut data = vec![String::new(); trail.ways.atoms.len()];
     for act in &film.acts {
@@ -67,7 +68,7 @@ fn times(trail: &Trail, film: &Film<'_>, middle: f64, at: impl Fn(Nanos) -> f64)
     })
 }
 
-/// Draws round times below the line.
+/// Draws labels with round times below the timeline.
 fn ticks(film: &Film<'_>, below: f64, at: impl Fn(Nanos) -> f64) -> Group {
     let end = film.end().seconds();
     let step = round_step((end * APART / (at(film.end()) - at(Nanos::ZERO))).max(0.1));
@@ -112,7 +113,7 @@ fn speed(film: &Film<'_>, (x, y): (f64, f64)) -> Text {
     text("", (x, y), "end").add(TSpan::new("").set("class", "now")).add(TSpan::new(format!("{end}{fast}")))
 }
 
-/// Draws the symbols for pause and resume; both are hidden if the viewer runs no scripts.
+/// Draws the pause and resume symbols; both are hidden if the viewer runs no scripts.
 fn button((x, y): (f64, f64)) -> Group {
     let area = Rectangle::new().set("x", x - 14.0).set("y", y - 14.0).set("width", 28).set("height", 28);
     let bars = format!("M{} {}v{}m{} 0v-{}", x - 4.0, y - BUTTON, 2.0 * BUTTON, 8.0, 2.0 * BUTTON);

@@ -1,4 +1,4 @@
-//! Tests of pictures of various runs: well-formed, with everything inside, reproducible, and small.
+//! Tests that pictures of various runs are well-formed, complete, reproducible and small.
 
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS};
 use svg::parser::Event;
@@ -10,7 +10,7 @@ use crate::place::Place;
 use crate::trail::Trail;
 use crate::world::World;
 
-/// Returns a run of this many turns in circles, in which an atom begins every `an_atom_every` turns.
+/// Returns the trail of a run of this many turns in circles, in which an atom begins every `an_atom_every` turns.
 fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
     let mut trail = Trail::from(&Footprint { pose: Pose::ORIGIN, form: Form::SCOUT });
     trail.frames = Some(Frames::new());
@@ -34,7 +34,7 @@ fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
     trail
 }
 
-/// Returns the tags and the text of a picture, after checking that it is a tree of elements.
+/// Returns the tags and the text of a picture, after checking that its elements are properly nested.
 fn read(picture: &str) -> (Vec<String>, String) {
     let (mut open, mut tags, mut text) = (Vec::new(), Vec::new(), String::new());
     for event in svg::read(picture).unwrap() {
@@ -80,7 +80,7 @@ fn pictures_of_every_run_are_well_formed_and_say_what_ran() {
     }
 }
 
-/// Returns the run of a plan that repeats three atoms `passes` times; each atom runs for ten turns.
+/// Returns the trail of a plan that repeats three atoms `passes` times; each atom runs for ten turns.
 fn passes(passes: u64) -> Trail {
     let mut trail = run(0, 1, "");
     for turn in 0..30 * passes {
@@ -116,11 +116,11 @@ fn each_atom_of_a_loop_is_drawn_listed_and_called_out_once() {
 
 #[test]
 fn a_record_shows_every_pass_in_the_colour_of_its_atom() {
-    // Of 200 passes, most atoms begin and end between two moments that are kept.
+    // With 200 passes, most atoms begin and end between two frames.
     let picture = animated(&World::parse("empty", "").unwrap(), &passes(200));
     for number in 0..3 {
         let class = format!("way{number}");
-        // The line of time, and each pass.
+        // One path in the timeline, and one for each pass.
         let ways = values(&picture, "path", "class").into_iter().filter(|value| *value == class).count();
         assert_eq!(ways, 201, "{class}");
     }
@@ -144,7 +144,7 @@ fn the_script_of_a_record_finds_what_it_asks_for() {
         let number = values(&picture, "g", &format!("data-{name}"));
         assert!(matches!(&number[..], [number] if number.parse::<f64>().is_ok()), "{name}: {number:?}");
     }
-    // Without a script there is no button, and the end of the run has its time.
+    // Without scripts, the button is hidden, and the text shows the duration of the run.
     assert!(picture.contains("class=\"button\" cursor=\"pointer\" visibility=\"hidden\""));
     assert!(read(&picture).1.contains("139.9 s, shown 10 times as fast"));
 }
@@ -158,7 +158,7 @@ fn a_record_is_small_however_long_the_run() {
     }
 }
 
-/// Returns the values of an attribute of all elements of this name.
+/// Returns the values of an attribute of all elements with this name.
 fn values(picture: &str, tag: &str, attribute: &str) -> Vec<String> {
     let elements = svg::read(picture).unwrap().filter_map(|event| {
         let Event::Tag(name, _, attributes) = event else { return None };
@@ -182,7 +182,7 @@ fn all_animations_repeat_together_and_their_times_are_in_order() {
     }
 }
 
-/// A world with a door that opens, a walker who has gone 2 m in the end, and a walker who never moves.
+/// World with a door that opens, a walker who has moved 2 m at the end, and a walker who never moves.
 const THINGS: &str = "[[door]]\npoints = [[0, 1], [1, 1]]\nopen = [[1, 2]]\n\
                       [[disc]]\nradius = 0.25\nschedule = [[0, 2, 0], [4, 4, 0]]\n\
                       [[box]]\nsize = [0.5, 0.5]\nschedule = [[0, -7, -3]]\n";
@@ -195,7 +195,7 @@ fn what_moves_is_drawn_where_it_is_and_moves_in_a_record() {
     for turn in 0..41_u64 {
         let gone = Place { x: turn as f64 * 0.05, y: 0.0 };
         let door = (!(10..20).contains(&turn)).then_some(Place { x: 0.0, y: 0.0 });
-        // Boxes come first, doors last.
+        // The order of moving objects: boxes and discs first, doors last.
         trail.things = vec![Some(Place { x: 0.0, y: 0.0 }), Some(gone), door];
         let things = trail.things.clone();
         let frame = Frame { t: Nanos(turn * 100_000_000), pose: trail.here, echoes: [None; SONARS], things };
@@ -206,7 +206,7 @@ fn what_moves_is_drawn_where_it_is_and_moves_in_a_record() {
         let (_, text) = read(picture);
         assert!(text.contains("door") && text.contains("moves"), "{text}");
     }
-    // Hidden from 1 s to 2 s of the run's 4 s, after which it rests 2.5 s.
+    // Hidden from 1 s to 2 s; the film lasts 4 s, plus a pause of 2.5 s.
     let doors = values(&record, "animate", "values").into_iter().zip(values(&record, "animate", "keyTimes"));
     let door = doors.filter(|(values, _)| values == "visible;hidden;visible").map(|(_, times)| times);
     assert_eq!(door.collect::<Vec<_>>(), ["0;0.15385;0.30769"]);

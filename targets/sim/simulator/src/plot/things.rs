@@ -1,5 +1,5 @@
-//! Draws the moving objects of a world: doors are dashed, other objects are at their last position, with the path that
-//! they followed.
+//! Draws the moving objects of a world: doors as dashed lines, other objects at their last position, with the path that
+//! they follow.
 
 use svg::node::element::{Group, Path};
 
@@ -12,9 +12,9 @@ use crate::place::Place;
 use crate::trail::Trail;
 use crate::world::World;
 
-/// Dashes of the lines of doors.
+/// Dash pattern of doors.
 const DASHES: &str = "5 4";
-/// Displacement of a moving object that has not moved.
+/// Displacement of an object that has not moved.
 const NOWHERE: Place = Place { x: 0.0, y: 0.0 };
 
 /// A symbol that the legend explains.
@@ -117,7 +117,7 @@ fn outline(pixels: impl IntoIterator<Item = Pixel>) -> Path {
     polyline(pixels).set("class", "ink solid").set("stroke-width", 1.5)
 }
 
-/// Returns the values, without each value that equals both the previous and the next value.
+/// Returns the values, omitting each value that equals both the previous and the next value.
 fn bends<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
     let mut values = values.peekable();
     let mut last: Option<String> = None;

@@ -1,4 +1,4 @@
-//! The title of a plot: the plan, the world and the body, and the end of the run, in lines that fit.
+//! The title of a plot (the plan, the world, the body, and the end of the run), broken into lines that fit.
 
 use mdle_runtime::Printable;
 use svg::node::element::Group;
@@ -7,7 +7,7 @@ use super::shapes::text;
 use super::sizes::{LEFT, LETTER, MARGIN};
 use crate::trail::About;
 
-/// Sizes of the letters of the plan's name and of the lines below it, in pixels.
+/// Letter sizes of the plan's name and of the lines below it, in pixels.
 const NAME: u32 = 18;
 const REST: u32 = 14;
 /// Maximum number of letters of the whole title, which a viewer shows as the picture's name.
@@ -15,7 +15,7 @@ const WHOLE: usize = 400;
 /// Maximum number of lines into which a text is broken.
 const LINES: usize = 3;
 
-/// The lines of a title.
+/// A title, broken into lines.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Title {
     /// Lines of the title, each with the size of its letters in pixels.
@@ -25,7 +25,7 @@ pub(super) struct Title {
 }
 
 impl Title {
-    /// Returns the title of a run, in lines of at most this many pixels.
+    /// Returns the title of a run, in lines of at most `width` pixels.
     pub(super) fn of(about: &About, width: f64) -> Self {
         let About { setup, plan, end } = about;
         let all = [(NAME, plan), (REST, end), (REST, setup)].map(|(size, text)| (size, Printable(text).to_string()));
@@ -39,7 +39,7 @@ impl Title {
         Self { lines: lines.collect(), whole: if whole.is_empty() { "A run".to_owned() } else { whole } }
     }
 
-    /// Returns the height of all lines, with the space below them.
+    /// Returns the height of all lines, including the space below them.
     pub(super) fn height(&self) -> f64 {
         let lines = self.lines.iter().map(|(size, _)| height(*size)).sum::<f64>();
         if self.lines.is_empty() { 0.0 } else { lines + MARGIN / 2.0 }
@@ -60,7 +60,7 @@ fn height(size: u32) -> f64 {
     f64::from(size) * 1.4
 }
 
-/// Breaks a text between words into a few lines of at most this many letters; a text that does not fit ends in `…`.
+/// Breaks a text between words into at most [`LINES`] lines of `letters` letters; a text that does not fit ends in `…`.
 fn wrapped(text: &str, letters: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
