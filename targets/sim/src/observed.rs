@@ -9,7 +9,7 @@ use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
 use mdle_simulator::{Charger, Drawing, Fault, Goal, RobotEars, Simulated, World};
 
-/// A simulated robot with the observers of its run, which do not change how it drives.
+/// A simulated robot with the observers of its run, which do not affect its motion.
 pub struct Observed {
     robot: Simulated,
     goal: Option<Goal>,
@@ -23,13 +23,13 @@ pub struct Observed {
     ears: Option<(RobotEars, Microphones)>,
 }
 
-/// Sounds of a world, which the robot hears once it has ears.
+/// Sound sources of a world, which the robot hears once it has ears.
 pub(crate) struct Sounds {
     pub(crate) world: Arc<World>,
     pub(crate) seed: u64,
 }
 
-/// The pictures to be drawn at the end, and their data.
+/// Pictures to be drawn at the end, and their data.
 struct Pictures {
     plot: Option<WholeFile>,
     record: Option<WholeFile>,
@@ -73,20 +73,20 @@ impl From<Simulated> for Observed {
 }
 
 impl Observed {
-    /// Returns the true pose of the robot on the floor, which only the simulator knows.
+    /// Returns the robot's true pose on the floor, which only the simulator knows.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.robot.pose()
     }
 
     /// Returns the distance between the robot's body and the nearest obstacle, in metres, or `reach` if that is less;
-    /// negative where they overlap.
+    /// negative if they overlap.
     #[must_use]
     pub fn gap(&self, reach: f64) -> f64 {
         self.robot.gap(reach)
     }
 
-    /// Returns `true` if the robot touches an obstacle, by the bumper of its last exchange.
+    /// Returns `true` if the bumper reported a contact in the last exchange.
     #[must_use]
     pub fn touches(&self) -> bool {
         self.touches
@@ -97,13 +97,13 @@ impl Observed {
         self.robot.set_charge(charge);
     }
 
-    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world;
-    /// `None` for a world without a charger.
+    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world, which
+    /// is `None` if the world has no charger.
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.robot.supply(charge, charger);
     }
 
-    /// Sets the sounds that the robot hears, once it has ears.
+    /// Sets the sounds that the robot hears once it has ears.
     pub(crate) fn among(self, sounds: Sounds) -> Self {
         Self { sounds: Some(sounds), ..self }
     }
@@ -111,7 +111,7 @@ impl Observed {
     /// Gives the robot ears on a head of this radius, in metres.
     ///
     /// # Errors
-    /// Fails with a sentence if the world has no source of sound.
+    /// Returns a sentence if the world has no sound source.
     pub(crate) fn take_ears(&mut self, microphones: Microphones, radius: f64) -> Result<(), String> {
         let ears = self.sounds.as_ref().and_then(|Sounds { world, seed }| RobotEars::new(world, radius, *seed));
         let silent = "--ears robot: the world has no source of sound\n\
@@ -120,17 +120,17 @@ impl Observed {
         Ok(())
     }
 
-    /// Sets the paths that the plan replays.
+    /// Sets the recorded paths that the plan can replay.
     pub(crate) fn take_paths(&mut self, paths: PathStore) {
         self.robot.paths = paths;
     }
 
-    /// Sets the goal by which the end of the run is evaluated; `None` for no goal.
+    /// Sets the goal that decides whether the run succeeds; `None` for no goal.
     pub(crate) fn judged_by(self, goal: Option<Goal>) -> Self {
         Self { goal, ..self }
     }
 
-    /// Draws the path driven when the run is finished, as a still picture and as a moving one; `setup` names the world,
+    /// Draws the path driven after the run has ended, as a still and as a moving picture; `setup` describes the world,
     /// the body and the seed in their titles.
     pub(crate) fn drawn(
         mut self,
@@ -150,8 +150,8 @@ impl Observed {
         Self { watch, ..self }
     }
 
-    /// Writes the robot's poses to `file` during the run: `t,x,y,heading` in seconds, metres and degrees. With `None`,
-    /// no poses are written.
+    /// Writes the robot's poses to `file` during the run, as lines `t,x,y,heading` in seconds, metres and degrees. With
+    /// `None`, no poses are written.
     pub(crate) fn written_down(mut self, file: Option<WholeFile>) -> Self {
         self.table = file.map(|file| Table { file, lines: None });
         self
@@ -198,7 +198,7 @@ impl Robot for Observed {
     }
 }
 
-/// Name of the setting of the sonars' order.
+/// Name of the setting for the order of the sonars.
 const SONARS: &str = "sonars";
 
 impl RobotSettings for Observed {

@@ -1,4 +1,4 @@
-//! The options of the simulator: its world and batches of runs.
+//! Command-line options of the simulator: its world, its robot, and batches of runs.
 
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use mdle_host::{NamedFile, Pace, Time, read_file};
 use mdle_simulator::{Body, Goal, Make, MapHeader, PARTS, Start, StartNoise, World};
 
-/// Maximum size of the file of a world or a map, in bytes.
+/// Maximum size of a world file or map file, in bytes.
 const LARGEST: u64 = 64_000_000;
 
 /// Adds the options of the simulator to `command`.
@@ -115,7 +115,7 @@ fn of_runs(command: Command) -> Command {
 /// Options that show or record a single run.
 const ONE_RUN: [&str; 4] = ["watch", "plot", "record", "trail"];
 
-/// Options of several runs that are left out of the command that repeats a single one of these runs.
+/// Options of a batch that are omitted from the command that repeats a single run of the batch.
 const OF_SEVERAL: [&str; 5] = ["runs", "jobs", "json", "seed", "speed"];
 
 /// Returns a long option with a value.
@@ -139,8 +139,8 @@ fn pace(text: &str) -> Option<Pace> {
     }
 }
 
-/// Returns the world of `--world`, or the office floor by default. A file has priority over a built-in world of
-/// the same name.
+/// Returns the world of `--world`; the office floor by default. A file has priority over a built-in world of the same
+/// name.
 pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
     let Some(path) = matches.get_one::<PathBuf>("world") else {
         return World::office().map_err(|error| error.to_string());
@@ -151,8 +151,8 @@ pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
     }
 }
 
-/// Returns the goal of `--goal`: the goal of the world, or the goal that the option describes; `None` without the
-/// option.
+/// Returns the goal of `--goal`, which is the goal of the world or the goal that the option describes; `None` without
+/// the option.
 pub(crate) fn goal(matches: &ArgMatches, world: &World) -> Result<Option<Goal>, String> {
     let Some(text) = matches.get_one::<String>("goal") else { return Ok(None) };
     if text == "world" {
@@ -196,7 +196,7 @@ pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, Strin
     Ok(Some((text, start)))
 }
 
-/// Returns the simulated body, as `--body`, `--without` and `--seed` give it.
+/// Returns the settings of the simulated robot in `--body`, `--without` and `--seed`.
 pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
     let name = matches.get_one::<String>("body").map_or("ideal", String::as_str);
     let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == name);
@@ -213,7 +213,7 @@ pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
     Ok(Make { body, without: without.collect::<Result<_, _>>()?, seed: matches.get_one("seed").copied() })
 }
 
-/// Returns the charge of `--battery`, from 0 to 1.
+/// Returns the charge given with `--battery`, from 0 to 1.
 pub(crate) fn battery(matches: &ArgMatches) -> f64 {
     matches.get_one("battery").map_or(1.0, |percent: &u64| *percent as f64 / 100.0)
 }
@@ -235,7 +235,7 @@ pub(crate) fn jobs(matches: &ArgMatches) -> Option<NonZeroUsize> {
     usize::try_from(jobs).ok().and_then(NonZeroUsize::new)
 }
 
-/// Checks that `--speed` does not slow down several runs, which are made as fast as possible.
+/// Checks that `--speed` does not slow down a batch, whose runs are always made as fast as possible.
 pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
     match time(matches)? {
         Time::Stepped(Pace::Times(times)) if matches.contains_id("speed") => Err(format!(
@@ -245,7 +245,7 @@ pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
     }
 }
 
-/// Returns the given options that apply to every one of several runs, as words of a command.
+/// Returns the given options that apply to every run of a batch, as words of a command.
 pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
     let names = matches.ids().map(|id| id.as_str()).filter(|name| !OF_SEVERAL.contains(name));
     let given = names.filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine));
@@ -262,7 +262,7 @@ pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
     words.collect()
 }
 
-/// Returns the path of the option `--plot`, `--record` or `--trail`; `None` if it is not given.
+/// Returns the path given with the option `--plot`, `--record` or `--trail`; `None` without the option.
 pub(crate) fn file<'m>(matches: &'m ArgMatches, option: &str) -> Option<&'m Path> {
     matches.get_one::<PathBuf>(option).map(PathBuf::as_path)
 }

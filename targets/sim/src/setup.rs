@@ -1,5 +1,4 @@
-//! The setup of a run, from options that are read and checked before anything moves: a single run, or several
-//! runs with different seeds.
+//! Creates a single run, or a batch of runs with different seeds, from options that are checked before anything moves.
 
 use std::num::NonZeroUsize;
 use std::sync::Arc;
@@ -14,7 +13,7 @@ use mdle_simulator::{Goal, Make, PARTS, Simulated, Start, StartError, StartNoise
 use crate::observed::{Observed, Sounds};
 use crate::options;
 
-/// A world, the robot that is simulated in it, and the robot's start pose.
+/// A world, the robot to simulate in it, and the robot's start pose.
 struct Setup {
     world: Arc<World>,
     walls: Walls,
@@ -66,7 +65,7 @@ impl Setup {
         let make = options::make(matches)?;
         let mut world = options::world(matches)?;
         let goal = options::goal(matches, &world)?;
-        // Pictures show the goal that counts.
+        // Pictures show the goal that decides.
         world.goal = goal.or(world.goal);
         let walls = Walls::of_any(&world).map_err(|what| format!("--world: {what}"))?;
         let given = options::start(matches)?;
@@ -82,7 +81,7 @@ impl Setup {
         Ok(Self { world, walls, make, start, noise, goal, charge, period })
     }
 
-    /// Returns a description of the world, the body and the seed for titles.
+    /// Describes the world, the body and the seed, for titles.
     fn in_words(&self, world: &str) -> String {
         let Make { body, without, seed } = &self.make;
         let names =
@@ -93,7 +92,7 @@ impl Setup {
         format!("world {world}, body {body}{without}, {seed}")
     }
 
-    /// Returns the robot of the run with this seed, which determines the errors and the start pose.
+    /// Returns the robot for the run with this seed, which determines the errors and the start pose.
     fn robot(&self, seed: Option<u64>) -> Result<Observed, String> {
         let make = Make { seed, ..self.make.clone() };
         let start = match (self.noise, seed) {
@@ -108,9 +107,9 @@ impl Setup {
     }
 }
 
-/// Returns a hint for error messages: the start pose of the world, as an option.
+/// Returns a hint for error messages: the world's own start pose, written as an option.
 fn hint(start: &Pose) -> String {
-    // Degrees that were read from a file come back with a last digit of their own.
+    // Degrees that were read from a file may have a rounding error in their last digit.
     let degrees = libm::round(start.theta.degrees() * 1e6) / 1e6;
     format!("the world's own start is `--start {},{},{degrees}`", start.x.0, start.y.0)
 }

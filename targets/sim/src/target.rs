@@ -19,7 +19,7 @@ impl Target for Sim {
     const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
     type Robot = Observed;
     const PATHS: Option<Replays<Observed>> = Some(Replays {
-        // As `go` in the alphabet.
+        // The limits of `go` in the alphabet.
         fastest: Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) },
         take: Observed::take_paths,
         speed: |sensed| sensed.velocity.v,

@@ -1,5 +1,5 @@
-//! Tests of `advance` on the simulated bodies, at the limits of their wheels, with their errors, and with turns of
-//! several durations: the law ends at rest at its distance, and the body does not overshoot.
+//! Tests `advance` on the simulated bodies, at the limits of their wheels, with their errors, and with turns of several
+//! durations: the law ends at rest at its distance, and the body does not overshoot.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;
@@ -9,21 +9,21 @@ use mdle_runtime::{Begin, Completes, Control, Frame, Law, Meters, MetersPerSecon
 use mdle_sim::alphabet::Advance;
 use mdle_sim::{Body, Make, Simulated, World};
 
-/// A path that was driven, in metres by odometry and seconds.
+/// Result of a drive: metres by odometry, and seconds.
 #[derive(Debug)]
 struct Driven {
-    /// Distance ahead, in metres; `aside` is the distance to the left.
+    /// Final distance ahead, in metres; `aside` is the distance to the left.
     ahead: f64,
     aside: f64,
-    /// Maximum distance on the intended side, in metres.
+    /// Maximum distance in the direction of travel, in metres.
     furthest: f64,
     /// Number of changes between forward and backward motion.
     hunts: u32,
     seconds: f64,
 }
 
-/// Runs `advance` on a body in an empty world, with turns of this many milliseconds, and for two more seconds
-/// in which the robot should stand still.
+/// Runs `advance` on a body in an empty world, with turns of `period` milliseconds, and then for two more seconds in
+/// which the robot should remain at rest.
 fn driven(distance: f64, speed: f64, make: &Make, period: u64) -> Driven {
     let world = World::parse("an empty floor", "").expect("a good world");
     let mut robot = Simulated::with(make, &world, Pose::ORIGIN, Duration::from_millis(period)).expect("a start");

@@ -1,4 +1,4 @@
-//! Tests of `goAvoid` on the simulated body: around boxes and through doorways, without contact.
+//! Tests `goAvoid` on the simulated body: around boxes and through doorways, without contact.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use mdle_runtime::{
@@ -7,8 +7,7 @@ use mdle_runtime::{
 use mdle_sim::alphabet::GoAvoid;
 use mdle_sim::{Simulated, World};
 
-/// Returns the number of ten starts, spread across 10 cm, from which a robot reaches the point 6 m ahead without
-/// contact.
+/// Returns how many of ten robots, whose starts are spread across 10 cm, reach the point 6 m ahead without contact.
 fn arrived(walls: &str) -> usize {
     let world = World::parse("a test's world", walls).expect("a good world");
     (0..10).filter(|start| reaches(&world, 0.05 * (f64::from(*start) / 4.5 - 1.0))).count()
@@ -36,7 +35,7 @@ fn reaches(world: &World, y: f64) -> bool {
     false
 }
 
-/// Returns a hallway of this width along the first axis, with more walls in it.
+/// Returns a hallway of this width along the first axis, with the additional walls `more`.
 fn hallway(width: f64, more: &str) -> String {
     let half = width / 2.0;
     format!("[[wall]]\npoints = [[-1, {half}], [8, {half}]]\n[[wall]]\npoints = [[-1, -{half}], [8, -{half}]]\n{more}")

@@ -1,5 +1,5 @@
-//! Tests that the simulated robot conforms: the ideal body, and the bodies of both robots with exact sensors. A robot
-//! with a fault in its driver does not conform, and the report names the fault.
+//! Tests that the simulated robot conforms, with the ideal body and with the bodies of both real robots without errors.
+//! Also tests that a robot with a fault in its driver does not conform, and that the report names the fault.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;
@@ -43,7 +43,7 @@ impl Stage for InWorld {
     }
 
     fn left_alone(&mut self, robot: &mut Observed, periods: u32) {
-        // Its time passes with exchanges alone.
+        // The robot's time advances only with exchanges.
         for _ in 0..periods {
             let _ = robot.exchange(&Input::default()).unwrap();
         }
@@ -79,7 +79,7 @@ struct Faulty {
     is_stopped: bool,
 }
 
-/// A faulty driver's changes to an input, to an output, and to a stop.
+/// Changes that a faulty driver makes to an input, to an output, and to a stop.
 #[derive(Clone, Copy)]
 struct Fault {
     input: fn(Input) -> Input,
@@ -132,7 +132,7 @@ impl Stage for Fault {
     }
 }
 
-/// Returns the pings of every sonar after `change`, newest first, as a driver might keep them.
+/// Replaces every ping by the result of `change`, as a faulty driver might.
 fn repinged(y: &mut Output, change: impl Fn(usize, &Ping) -> Ping) {
     for pings in &mut y.pings {
         let kept: Vec<Ping> = pings.newest_first().enumerate().map(|(place, ping)| change(place, ping)).collect();
@@ -141,7 +141,7 @@ fn repinged(y: &mut Output, change: impl Fn(usize, &Ping) -> Ping) {
     }
 }
 
-/// Returns the first check that finds the fault, and its message.
+/// Returns the name of the first check that detects the fault, and its message.
 fn found(mut fault: Fault) -> String {
     let parts: [fn(Suite<'_, Fault>) -> Suite<'_, Fault>; 5] = [
         |suite| suite.diff_drive(),

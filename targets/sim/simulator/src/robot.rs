@@ -24,11 +24,11 @@ pub struct Simulated {
     body: Body,
     ring: Ring,
     shape: Shape,
-    /// Drift of the robot's odometry, measured by walls.
+    /// Drift of the robot's odometry, measured at walls.
     compass: Compass,
     battery: Battery,
     charger: Option<Charger>,
-    /// Paths that the plan can replay.
+    /// Recorded paths that the plan can replay.
     pub paths: PathStore,
     /// Number of bumper switches.
     switches: u8,
@@ -37,7 +37,7 @@ pub struct Simulated {
     exchanges: u64,
 }
 
-/// The parts of a simulation other than its world.
+/// Settings of a simulated robot, apart from its world.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Make {
     /// The body.
@@ -74,19 +74,19 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Simulated {
-    /// Returns a robot with an ideal body at rest at `start` in `world`, whose odometry begins there. Its
-    /// sonars are exact, or noisy with a seed.
+    /// Returns a robot with an ideal body at rest at `start` in `world`, where its odometry begins. Its sonars are
+    /// exact, or noisy if a seed is given.
     ///
     /// # Errors
-    /// Fails if the robot cannot stand at `start`.
+    /// Fails if the robot cannot start at `start`.
     pub fn new(world: &World, start: Pose, seed: Option<u64>, period: Duration) -> Result<Self, StartError> {
         Self::with(&Make { seed, ..Make::default() }, world, start, period)
     }
 
-    /// Returns a robot of this make at rest at `start` in `world`, whose odometry begins there.
+    /// Returns a robot with the settings `make` at rest at `start` in `world`, where its odometry begins.
     ///
     /// # Errors
-    /// Fails if the robot cannot stand at `start`.
+    /// Fails if the robot cannot start at `start`.
     pub fn with(make: &Make, world: &World, start: Pose, period: Duration) -> Result<Self, StartError> {
         let walls = Walls::of(world);
         let Model { drive, hearing, switches, pack } = Model::of(make.body, &make.without);
@@ -117,10 +117,10 @@ impl Simulated {
         })
     }
 
-    /// Returns a robot with the body and the world of this one, and its battery as it is now, at rest at `start`.
+    /// Returns a robot with the body, the world and the current battery of this one, at rest at `start`.
     ///
     /// # Errors
-    /// Fails if the robot cannot stand at `start` in `world`, which must be the world of this robot.
+    /// Fails if the robot cannot start at `start` in `world`, which must be the world of this robot.
     pub fn another(&self, world: &World, start: Pose, seed: Option<u64>) -> Result<Self, StartError> {
         start::check(&start, self.footprint().form, world, &self.walls)?;
         Ok(Self {
@@ -134,8 +134,8 @@ impl Simulated {
         })
     }
 
-    /// Returns the distance from the robot's centre within which its sonars hear the centres of robots like it, in
-    /// metres.
+    /// Returns the maximum distance, in metres, between the robot's centre and the centre of a similar robot that its
+    /// sonars can hear.
     #[must_use]
     pub fn hears(&self) -> f64 {
         let radius = self.footprint().form.radius();
@@ -143,14 +143,14 @@ impl Simulated {
         offsets.fold(self.ring.hearing.ring_radius, f64::max) + self.ring.hearing.most + radius
     }
 
-    /// Returns the greatest distance, in metres, between the centres of two robots like this one that may touch in the
-    /// next exchange.
+    /// Returns the maximum distance, in metres, between the centres of two such robots that may touch in the next
+    /// exchange.
     #[must_use]
     pub fn touches(&self) -> f64 {
         2.0 * (self.footprint().form.radius() + self.body.goes_most(self.period.as_secs_f64()))
     }
 
-    /// Returns the true pose of the robot on the floor, which only the simulator knows.
+    /// Returns the robot's true pose on the floor, which only the simulator knows.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose
@@ -168,8 +168,8 @@ impl Simulated {
         self.battery.charge(charge);
     }
 
-    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world;
-    /// `None` for a world without a charger.
+    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world, which
+    /// is `None` if the world has no charger.
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.battery.charge(charge);
         self.charger = charger;
@@ -185,14 +185,14 @@ impl Simulated {
         self.charger.is_some_and(|charger| charger.holds(&self.body.pose))
     }
 
-    /// Returns the robot's outline in the world, as other robots hear and touch it.
+    /// Returns the area that the robot covers, as other robots hear and touch it.
     #[must_use]
     pub fn footprint(&self) -> Footprint {
         self.body.footprint()
     }
 
     /// Returns the distance between the body and the nearest obstacle, in metres, or `reach` if that is less; negative
-    /// where they overlap.
+    /// if they overlap.
     #[must_use]
     pub fn gap(&self, reach: f64) -> f64 {
         self.walls.gap(&self.footprint(), reach)
@@ -203,7 +203,7 @@ impl Simulated {
         self.walls.put_others(others);
     }
 
-    /// Exchanges the other robots, which this robot hears and cannot pass through, with the robots in `others`.
+    /// Swaps the other robots, which this robot hears and cannot pass through, with those in `others`.
     pub fn swap_others(&mut self, others: &mut Others) {
         self.walls.swap_others(others);
     }
@@ -221,8 +221,8 @@ impl Simulated {
         self.ring.order()
     }
 
-    /// Makes these sonars ping from the next exchange on, one after the other; ignored on a body whose sonars
-    /// ping together.
+    /// Makes these sonars ping from the next exchange on, one after another; has no effect on a body whose sonars ping
+    /// together.
     pub fn order_sonars(&mut self, order: &[u8]) {
         if self.ring.order().is_some() {
             self.ring.reorder(order);
@@ -234,7 +234,7 @@ impl Simulated {
         self.walls.gone()
     }
 
-    /// Returns the point of an obstacle that the body touches; the centre of the body if it touches none.
+    /// Returns the point of an obstacle that the body touches; the centre of the body if it touches no obstacle.
     pub(crate) fn touched(&self) -> Place {
         let at = Place::of(&self.body.pose);
         let body = self.footprint();
@@ -248,11 +248,11 @@ impl Simulated {
         Nanos(self.exchanges.saturating_mul(period))
     }
 
-    /// Drives for the period that ends at `now`, and pings whenever a sonar is due during it.
+    /// Drives for the period that ends at `now`; each sonar pings when it is due.
     fn drive(&mut self, input: &Twist, now: Nanos) {
         let begins = Nanos(now.0.saturating_sub(u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX)));
         if self.exchanges == 0 {
-            // The plan begins at the end of this period, and so does the world.
+            // The first exchange: the plan and the moving objects begin at the end of this period.
             self.body.advance(input, self.period.as_secs_f64(), &self.walls);
             self.ring.warm_up(&self.body.pose, self.body.odometry(), &self.walls);
         } else if self.ring.due().is_none() {
@@ -271,7 +271,7 @@ impl Simulated {
         }
     }
 
-    /// Drives for one period with `input`: the first half of an exchange. Robots that share a world all move before any
+    /// Drives for one period with `input`, the first half of an exchange. Robots that share a world all move before any
     /// of them takes its output.
     ///
     /// # Errors
@@ -289,7 +289,7 @@ impl Simulated {
         Ok(())
     }
 
-    /// Takes the output after [`Simulated::moves`]: the second half of an exchange.
+    /// Takes the output after [`Simulated::moves`], the second half of an exchange.
     pub fn senses(&mut self) -> Sensed {
         let now = self.now();
         self.exchanges = self.exchanges.saturating_add(1);

@@ -1,8 +1,8 @@
-//! Creates worlds from ROS maps as `map_server` saves them: a YAML file of a few keys, and an image.
+//! Creates worlds from ROS maps as `map_server` saves them: a YAML file with a few keys, and an image.
 //!
-//! Pixels darker than the threshold are occupied; there is a wall where they border on other pixels. The pixel steps of
-//! a slanted wall are smoothed, since a sonar would not hear the wall otherwise. Unknown pixels are floor. The robot
-//! starts at the origin of the map's frame, which is where the mapping robot began.
+//! Pixels darker than the threshold are occupied; walls are where they border on other pixels. The pixel steps of a
+//! slanted wall are smoothed, since a sonar would not hear the wall otherwise. Unknown pixels are floor. The robot
+//! starts at the origin of the map's frame, where the mapping robot began.
 
 mod contours;
 mod header;
@@ -21,15 +21,15 @@ pub use header::Header;
 use image::Image;
 
 impl Header {
-    /// Returns the world of this header and of the bytes of its image; `file` is the name of the image in error
-    /// messages.
+    /// Returns the world of this header and of the image with the contents `bytes`; `file` is the name of the image in
+    /// error messages.
     ///
     /// # Errors
-    /// Fails if the bytes are not a readable image, or are an image with too many walls.
+    /// Fails if the image is not readable or has too many walls.
     pub fn world(&self, file: &str, bytes: &[u8]) -> Result<World, WorldError> {
         let image = Image::read(bytes).map_err(|what| WorldError::new(file, None, what))?;
         let (sin, cos) = libm::sincos(self.yaw);
-        // Rows count from the top of the image, the map's second axis from its bottom.
+        // Image rows count from the top, the map's second axis from the bottom.
         let place = |(column, row): (i32, i32)| {
             let (x, y) =
                 (f64::from(column) * self.resolution, (image.height as f64 - f64::from(row)) * self.resolution);

@@ -17,19 +17,19 @@ use crate::walls::Walls;
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     pub(crate) pings: [Pings; SONARS],
-    /// The model of the sonars, which all robots with the same body share.
+    /// Model of the sonars, which all robots with the same body share.
     pub(crate) hearing: Arc<Hearing>,
-    /// Newest ping of each transducer, with the range from the transducer itself.
+    /// Latest ping of each transducer, with the range measured from the transducer itself.
     pub(crate) heard: Vec<Heard>,
     errors: Option<Errors>,
-    /// The group that pings next, and the time of its ping; without effect if all sonars ping in every turn.
+    /// Next group to ping, and the time of its ping; not used if all sonars ping in every turn.
     next: (usize, Nanos),
 }
 
-/// The last ping of a transducer; several transducers may represent one sonar.
+/// Last ping of a transducer; several transducers may belong to one sonar.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Heard {
-    /// Range from the transducer; `None` when no echo came back.
+    /// Range from the transducer; `None` if no echo returned.
     pub range: Option<Meters>,
     /// Time of the ping.
     pub at: Nanos,
@@ -46,7 +46,7 @@ struct Errors {
 }
 
 impl Ring {
-    /// Returns sonars with the errors of this seed, or without errors.
+    /// Returns sonars with the errors of `seed`, or without errors.
     pub(crate) fn new(hearing: impl Into<Arc<Hearing>>, seed: Option<u64>) -> Self {
         let hearing = hearing.into();
         let errors = seed.map(|seed| {
@@ -79,7 +79,7 @@ impl Ring {
         groups.iter().map(sonar).collect()
     }
 
-    /// Makes these sonars ping from now on, one after the other, if the sonars ping in turn.
+    /// Makes these sonars ping from now on, one after another, if the sonars ping in turn.
     pub(crate) fn reorder(&mut self, sonars: &[u8]) {
         let transducers = &self.hearing.transducers;
         let of = |sonar: &u8| transducers.iter().position(|known| known.sonar.number() == usize::from(*sonar));
@@ -90,7 +90,7 @@ impl Ring {
         }
     }
 
-    /// Fires the sonars that are due at `at`, on a robot at `pose` whose odometry reads `odometry`.
+    /// Fires the sonars that are due at `at`, on a robot at `pose` whose odometry reports `odometry`.
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
         let Some(Order { groups, gap }) = &self.hearing.order else {
             for number in 0..self.heard.len() {
@@ -107,20 +107,20 @@ impl Ring {
         for place in 0..count {
             let Some(number) = self.grouped(group, place) else { continue };
             self.listen(number, pose, at, walls);
-            // A sonar of several transducers has pinged when the last of them has.
+            // A sonar with several transducers has pinged when the last of them has pinged.
             if let Some(sonar) = self.completed(group, number) {
                 self.pings[sonar].push(nearest(&self.hearing, &self.heard, sonar, at, odometry));
             }
         }
     }
 
-    /// Returns the number of the transducer at position `place` of a group; `None` if there is none.
+    /// Returns the number of the transducer at index `place` of a group; `None` if there is no such transducer.
     fn grouped(&self, group: usize, place: usize) -> Option<usize> {
         self.hearing.order.as_ref()?.groups.get(group)?.get(place).copied()
     }
 
-    /// Makes the sonars ping until each has as many pings as an output keeps, as if the robot had been switched on a
-    /// while before the plan began.
+    /// Makes the sonars ping until each has as many pings as an output stores, as if the robot had been switched on
+    /// some time before the plan began.
     pub(crate) fn warm_up(&mut self, pose: &Pose, odometry: Pose, walls: &Walls) {
         let Some(order) = &self.hearing.order else { return };
         for _ in 0..order.groups.len() * mdle_runtime::PINGS_KEPT {
@@ -129,8 +129,8 @@ impl Ring {
         self.next.1 = self.hearing.order.as_ref().map_or(Nanos::ZERO, |order| order.gap);
     }
 
-    /// Returns the sonar that this transducer represents; `None` if another transducer of the same sonar pings later in
-    /// the firing order, or if there is no firing order.
+    /// Returns the sonar to which this transducer belongs; `None` if another transducer of the same sonar pings later
+    /// in the firing order, or if there is no firing order.
     fn completed(&self, group: usize, number: usize) -> Option<usize> {
         let speaks_for =
             |number: usize| self.hearing.transducers.get(number).map(|transducer| transducer.sonar.number());
@@ -172,7 +172,7 @@ impl Errors {
     }
 }
 
-/// Returns the place and the direction of a transducer.
+/// Returns the position and the direction of a transducer.
 fn placed(transducer: &Transducer, pose: &Pose, ring_radius: f64) -> (Place, Radians) {
     let axis = Radians(pose.theta.0 + transducer.bearing.0);
     if is_on_the_ring(transducer, ring_radius) {
@@ -188,8 +188,8 @@ fn is_on_the_ring(transducer: &Transducer, ring_radius: f64) -> bool {
         && (libm::hypot(transducer.x, transducer.y) - ring_radius).abs() < 1e-9
 }
 
-/// Returns a transducer's range as a range from the ring: measured along the transducer's axis from the point
-/// nearest to the centre, minus the ring's radius.
+/// Converts a transducer's range to a range from the ring: measured along the transducer's axis from the point nearest
+/// to the centre, minus the ring's radius.
 fn as_of_the_ring(range: f64, transducer: &Transducer, hearing: &Hearing) -> f64 {
     if is_on_the_ring(transducer, hearing.ring_radius) {
         return range;
@@ -204,11 +204,11 @@ fn mount(transducer: &Transducer, ring_radius: f64) -> Mount {
 }
 
 fn stepped(range: f64, step: f64) -> f64 {
-    // A whole number of steps is not to become the previous number by rounding.
+    // Prevents rounding errors from reducing a whole number of steps by one.
     if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
 }
 
-/// Returns the ping of this sonar, with the nearest of the last echoes of its transducers.
+/// Returns the ping of this sonar, with the nearest of its transducers' last echoes.
 fn nearest(hearing: &Hearing, heard: &[Heard], sonar: usize, at: Nanos, odometry: Pose) -> Ping {
     let speaking = hearing.transducers.iter().zip(heard).filter(|(transducer, _)| transducer.sonar.number() == sonar);
     let heard = speaking.filter_map(|(transducer, last)| {

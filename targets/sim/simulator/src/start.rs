@@ -1,4 +1,4 @@
-//! The start pose of the robot: read from `x,y,deg`, and checked against the world.
+//! The start pose of the robot: parsed from `x,y,deg`, and checked against the world.
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,12 +11,12 @@ use crate::place::Place;
 use crate::walls::{self, Walls};
 use crate::world::World;
 
-/// Number of directions in which an enclosed floor must have a wall.
+/// Number of directions in which an enclosed position must have a wall.
 const LOOKS: u16 = 180;
-/// Range of the search for walls, in metres: across any world.
+/// Range of the search for walls, in metres, which exceeds any world.
 const SIGHT: f64 = 1e7;
 
-/// A start pose as an option gives it.
+/// A start pose given by a command-line option.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start(pub Pose);
 
@@ -25,7 +25,7 @@ pub struct Start(pub Pose);
 pub enum StartError {
     /// The text is not `x,y,deg`.
     Malformed,
-    /// Sentence that says what to type instead of a part that is not a number with a unit.
+    /// A part is not a number with a unit; the sentence says what to type instead.
     Quantity(String),
     /// A body of this form would overlap this wall or box.
     Overlaps(Form, String),
@@ -69,7 +69,7 @@ impl FromStr for Start {
 /// Checks that a robot of this form can start at `pose` in `world`, whose walls are `walls`.
 ///
 /// # Errors
-/// Fails with the reason why the robot cannot start there.
+/// Returns the reason why the robot cannot start there.
 pub fn check(pose: &Pose, form: Form, world: &World, walls: &Walls) -> Result<(), StartError> {
     let (place, body) = (Place::of(pose), Footprint { pose: *pose, form });
     if let Some(outline) = world.solid(place) {
@@ -79,14 +79,14 @@ pub fn check(pose: &Pose, form: Form, world: &World, walls: &Walls) -> Result<()
         let name = walls::nearest(world, &body).map(|outline| outline.name.clone());
         return Err(StartError::Overlaps(form, name.unwrap_or_default()));
     }
-    // A world whose walls do not close has no outside.
+    // A world without closed walls has no outside.
     if !encloses(walls, place) && encloses(walls, Place::of(&world.start)) {
         return Err(StartError::OffTheFloor);
     }
     Ok(())
 }
 
-/// Returns `true` if there is a wall in every direction.
+/// Returns `true` if there is a wall in every direction from `place`.
 fn encloses(walls: &Walls, place: Place) -> bool {
     (0..LOOKS).all(|look| {
         let direction = Radians::from_degrees(f64::from(look) * (360.0 / f64::from(LOOKS)));
@@ -112,7 +112,7 @@ mod tests {
         }
     }
 
-    /// Checks a start pose on the office floor.
+    /// Checks a start pose in the office world.
     fn office(x: f64, y: f64) -> Result<(), StartError> {
         let world = World::office().expect("our own floor");
         check(&Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) }, Form::SCOUT, &world, &Walls::of(&world))

@@ -1,4 +1,4 @@
-//! Random start poses near the given one: `--start-noise` limits the distance, and the seed selects the pose.
+//! Random start poses near a given one: `--start-noise` limits the deviation, and the seed selects the pose.
 
 use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
@@ -14,7 +14,7 @@ const TRIES: u32 = 1000;
 /// Maximum values of `--start-noise`, in metres and degrees.
 const MOST: [f64; 2] = [100.0, 180.0];
 
-/// Maximum error of a start pose along each axis and in heading, to either side, with a uniform distribution.
+/// Maximum deviation of a start pose along each axis and in heading, to either side, with a uniform distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StartNoise {
     metres: f64,
@@ -22,11 +22,10 @@ pub struct StartNoise {
 }
 
 impl StartNoise {
-    /// Reads `metres,degrees`.
+    /// Parses `metres,degrees`.
     ///
     /// # Errors
-    /// Fails with a sentence that says what to type instead if the text is not a length and an angle within
-    /// their limits.
+    /// Fails if the text is not a length and an angle within their limits; the message says what to type instead.
     pub fn read(text: &str) -> Result<Self, String> {
         let sentence = "expected metres,degrees: up to 100 and 180, as in `0.1,5`";
         let (metres, degrees) = text.split_once(',').ok_or(sentence)?;
@@ -36,11 +35,10 @@ impl StartNoise {
         is_within.then_some(Self { metres, degrees }).ok_or_else(|| sentence.to_owned())
     }
 
-    /// Returns the start pose of `seed`: the first drawn around `start` at which a robot of this form can
-    /// stand.
+    /// Returns the start pose for `seed`: the first random pose around `start` at which a robot of this form can start.
     ///
     /// # Errors
-    /// Fails with the reason why the robot cannot stand at the last pose tried.
+    /// Returns the reason why the robot cannot start at the last pose tried.
     pub fn pose(self, start: &Pose, seed: u64, form: Form, world: &World, walls: &Walls) -> Result<Pose, StartError> {
         let mut noise = Noise::of(seed, Purpose::Start);
         let mut pose = self.drawn(start, &mut noise);
@@ -83,7 +81,7 @@ mod tests {
             .map(|seed| noise.pose(&world.start, seed, Form::SCOUT, &world, &walls).expect("there is room"))
             .collect();
         let greatest = |of: fn(&Pose) -> f64| poses.iter().map(|pose| of(pose).abs()).fold(0.0, f64::max);
-        // The wall is 0.75 m away, and the body 0.205 m thick.
+        // The wall is 0.75 m away, and the body's radius is 0.205 m.
         assert!((0.5..=0.545).contains(&greatest(|pose| pose.x.0.min(0.0))));
         assert!((0.9..=1.0).contains(&greatest(|pose| pose.y.0)));
         assert!((28.0..=30.0).contains(&greatest(|pose| pose.theta.degrees())));

@@ -1,14 +1,14 @@
-//! Finds properties of the surface that a ray meets: its normal, and the nearest edge.
+//! Determines properties of the surface that a ray hits: its normal, and the nearest edge.
 
 use crate::grid::Segment;
 use crate::place::Place;
 
-/// Distance, in metres, below which the end of a segment counts as a point of another segment.
+/// Distance below which the end of a segment counts as a point of another segment, in metres.
 const TOGETHER: f64 = 1e-3;
-/// Cosine of the angle up to which two segments form a smooth surface: 30°.
+/// Cosine of the maximum angle at which two segments form a smooth surface: 30°.
 const SMOOTH: f64 = 0.866;
 
-/// The form of one end of a segment.
+/// Form of one end of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum End {
     /// The end is free.
@@ -19,7 +19,7 @@ pub(crate) enum End {
     Meets(Place),
 }
 
-/// The forms of both ends of a segment, the end at `from` first.
+/// Forms of both ends of a segment; the end at `from` is first.
 pub(crate) type Ends = [End; 2];
 
 /// The surface that a ray has hit.
@@ -27,9 +27,9 @@ pub(crate) type Ends = [End; 2];
 pub(crate) struct Surface {
     /// Length of the ray, in metres.
     pub(crate) range: f64,
-    /// The unit normal of the surface, on the side of the ray.
+    /// Unit normal of the surface, on the side of the ray.
     pub(crate) normal: Place,
-    /// Distance, in metres, of the nearest edge that reflects sound back to the start of the ray; infinite if there is
+    /// Distance of the nearest edge that reflects sound back to the start of the ray, in metres; infinite if there is
     /// no such edge.
     pub(crate) edge: f64,
     /// Roughness, from 0 to 1.
@@ -43,8 +43,8 @@ pub(crate) fn ends<'s>(segment: &Segment, others: impl Iterator<Item = &'s Segme
     meeting.ends()
 }
 
-/// The ends of a segment, with the segments found at each so far. The memory needed does not depend on the number of
-/// segments.
+/// The ends of a segment, with the segments found at each end so far. The memory needed does not depend on the number
+/// of segments.
 pub(crate) struct Meeting {
     segment: Segment,
     ends: [(End, Option<Segment>); 2],
@@ -65,7 +65,7 @@ impl Meeting {
             if first.as_ref() == Some(other) || apart(other.nearest(at), at) > TOGETHER {
                 continue;
             }
-            // Where three meet there is no edge to any side.
+            // Where three segments meet, there is no edge on any side.
             *end = if first.is_none() { met(other, at) } else { End::Covered };
             *first = first.or(Some(*other));
         }
@@ -115,7 +115,7 @@ fn is_edge(end: &End, outward: Place, normal: Place) -> bool {
     match end {
         End::Edge => true,
         End::Covered => false,
-        // A surface that comes forward makes a corner, one that goes on is the same surface.
+        // A surface that bends towards the ray forms a corner, and one that continues straight is the same surface.
         End::Meets(on) => dot(*on, outward) < SMOOTH && dot(*on, normal) <= 0.0,
     }
 }

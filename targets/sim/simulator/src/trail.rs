@@ -1,4 +1,5 @@
-//! The record of a run for its pictures: the path driven, the places where atoms began, the echoes, and the contacts.
+//! The record of a run for its pictures: the path driven, the positions where atoms began, the echoes, and the
+//! contacts.
 
 mod ways;
 
@@ -12,28 +13,28 @@ use crate::frames::{Frame, Frames};
 use crate::place::Place;
 pub(crate) use ways::{Atom, Mark, Ways};
 
-/// Side of a square, in metres, in which at most one echo is kept, so that even a long run keeps a limited
+/// Side length of a square in which at most one echo is kept, in metres, so that even a long run stores a limited
 /// number of echoes.
 const SQUARE: f64 = 0.04;
 
-/// The path driven by a robot.
+/// Record of a robot's run.
 #[derive(Debug, Clone)]
 pub(crate) struct Trail {
-    /// The form of the body.
+    /// Form of the body.
     pub(crate) form: Form,
     pub(crate) start: Pose,
     /// Current pose of the robot.
     pub(crate) here: Pose,
     /// Current displacement of each moving object of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
-    /// The path driven, divided into the parts that each atom drove.
+    /// The path driven, divided by atoms.
     pub(crate) ways: Ways,
-    /// Text about the run for a title.
+    /// Texts about the run, for titles.
     pub(crate) about: About,
-    /// Places of echoes, at most one in a square of 4 cm.
+    /// Positions of echoes, at most one per square of 4 cm.
     pub(crate) echoes: Vec<Place>,
     heard: BTreeSet<(i64, i64)>,
-    /// Place and time of each beginning of a contact, at most one in a square of 4 cm.
+    /// Position and time of the beginning of each contact, at most one per square of 4 cm.
     pub(crate) contacts: Vec<(Place, Nanos)>,
     touched: BTreeSet<(i64, i64)>,
     /// Time of the robot's last output; `None` before the first output.
@@ -44,7 +45,7 @@ pub(crate) struct Trail {
     pub(crate) frames: Option<Frames>,
     /// The other robots of a fleet; empty if there is only one robot.
     pub(crate) companions: Vec<Companion>,
-    /// Word for the elements that drive the path: `atom`, or `robot` in a fleet.
+    /// Word for what drives the parts of the path: `atom`, or `robot` in a fleet.
     pub(crate) kind: &'static str,
 }
 
@@ -56,10 +57,10 @@ pub(crate) struct Companion {
     pub(crate) here: Pose,
 }
 
-/// Descriptions of a run, for titles.
+/// Texts about a run, for titles.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct About {
-    /// Text about the world, the body and the seed.
+    /// Description of the world, the body and the seed.
     pub(crate) setup: String,
     /// Name of the plan; empty if it has no name, or before the run has ended.
     pub(crate) plan: String,
@@ -68,7 +69,7 @@ pub(crate) struct About {
 }
 
 impl Trail {
-    /// Returns the trail of a body that begins at this pose.
+    /// Begins the record of `body` at its current pose.
     pub(crate) fn from(body: &Footprint) -> Self {
         let pose = &body.pose;
         Self {
@@ -106,7 +107,7 @@ impl Trail {
             }
         }
         if let Some(frames) = &mut self.frames {
-            // What follows the last turn only stops the robot: a film is as long as the plan has run.
+            // After the last turn the robot is only stopped: the film has the duration of the plan.
             let t = self.ended.map_or(t, |ended| t.min(ended));
             frames.push(Frame { t, pose: self.here, echoes, things: self.things.clone() });
         }
@@ -140,8 +141,8 @@ impl Trail {
     }
 }
 
-/// Returns the positions on the floor of the echoes of the newest pings, by sonar; each echo is placed on the axis of
-/// its cone. `None` for a sonar without a ping since `before`.
+/// Returns, for each sonar, the floor position of its latest echo, placed on the axis of the sonar's cone, or `None` if
+/// the sonar has not pinged since `before`.
 #[must_use]
 pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Place>; SONARS] {
     let mut echoes = [None; SONARS];
@@ -153,14 +154,14 @@ pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Pl
         let from = on_the_floor(&ping.pose, pose, &sensed.pose());
         let axis = Radians(from.theta.0 + sonar.bearing().0);
         let place = Place::of(&from.towards(axis, Meters(sensed.ring_radius().0 + range)));
-        // A driver of one's own may say anything.
+        // A user's own driver may report any value.
         *echo = Some(place).filter(|place| place.x.is_finite() && place.y.is_finite());
     }
     echoes
 }
 
-/// Converts a pose by odometry, `then`, to a pose on the floor. The robot is at `here` on the floor and at `odometry`
-/// by the same odometry.
+/// Converts `then`, a pose by odometry, to a pose on the floor. The robot's current pose is `here` on the floor and
+/// `odometry` by odometry.
 fn on_the_floor(then: &Pose, here: &Pose, odometry: &Pose) -> Pose {
     let turned = here.theta.0 - odometry.theta.0;
     let (x, y) = (then.x.0 - odometry.x.0, then.y.0 - odometry.y.0);
@@ -184,7 +185,7 @@ mod tests {
     #[test]
     fn a_ping_is_drawn_where_it_was_taken_whatever_odometry_says() {
         let pose = |x, y, degrees| Pose { x: Meters(x), y: Meters(y), theta: Radians::from_degrees(degrees) };
-        // Half a metre back along the way, in both reckonings.
+        // Half a metre back along the path, in both frames.
         let then = on_the_floor(&pose(1.0, 0.0, 0.0), &pose(5.0, 5.0, 90.0), &pose(1.5, 0.0, 0.0));
         assert!(then.distance(&pose(5.0, 4.5, 0.0)).0 < 1e-12 && (then.theta.degrees() - 90.0).abs() < 1e-12);
         let same = pose(0.3, -0.2, 17.0);

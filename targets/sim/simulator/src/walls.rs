@@ -12,14 +12,14 @@ use crate::place::Place;
 use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
 use crate::world::World;
 
-/// Maximum number of pairs of a segment's end and another segment in the same cell; to check this number of pairs takes
+/// Maximum number of pairs of a segment's end and another segment in the same cell. Checking this number of pairs takes
 /// about a second.
 const PAIRS_MOST: u64 = 100_000_000;
 
-/// Distance, in metres, beyond a cone at which a robot still counts as inside it; larger than rounding errors.
+/// Distance outside a cone at which a robot still counts as inside, in metres; larger than rounding errors.
 const BESIDE: f64 = 1e-6;
 
-/// The walls of a world at a certain time.
+/// Walls of a world at a certain time.
 #[derive(Debug, Clone)]
 pub struct Walls {
     /// Fixed obstacles, which all robots in a world share.
@@ -30,7 +30,7 @@ pub struct Walls {
     rough: f64,
 }
 
-/// The fixed obstacles of a world.
+/// Fixed obstacles of a world.
 #[derive(Debug)]
 struct Standing {
     segments: Vec<Segment>,
@@ -40,7 +40,7 @@ struct Standing {
     grid: Grid,
 }
 
-/// The other robots around a robot.
+/// The other robots near a robot.
 #[derive(Debug, Clone, Default)]
 pub struct Others {
     /// Robots that its sonars may hear.
@@ -49,16 +49,16 @@ pub struct Others {
     pub touched: Vec<Footprint>,
 }
 
-/// The obstacles, other than moving objects, that rays may meet.
+/// Obstacles that rays may hit, other than moving objects.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reached<'o> {
     pub(crate) others: &'o [Footprint],
-    /// `false` if no ray can meet a fixed obstacle.
+    /// `false` if no ray can hit a fixed obstacle.
     pub(crate) standing: bool,
 }
 
 impl Walls {
-    /// Returns the walls and the sides of the fixed obstacles in `world`, and the moving objects where they begin.
+    /// Returns the fixed obstacles of `world`, and the moving objects at their first positions.
     #[must_use]
     pub fn of(world: &World) -> Self {
         let segments = segments(world);
@@ -66,11 +66,11 @@ impl Walls {
         Self::in_grid(world, segments, grid)
     }
 
-    /// Returns the walls of a world.
+    /// Returns the walls of a world that may have too many walls.
     ///
     /// # Errors
-    /// Fails with a sentence if too many pairs of walls share a cell of the grid, so that preparing the walls would
-    /// take too long.
+    /// Returns a sentence if too many pairs of walls share a cell of the grid, so that preparing the walls would take
+    /// too long.
     pub fn of_any(world: &World) -> Result<Self, String> {
         let segments = segments(world);
         let grid = Grid::of(&segments);
@@ -126,22 +126,22 @@ impl Walls {
         (range < most).then_some(range)
     }
 
-    /// Returns all other robots that rays may meet, and the fixed obstacles.
+    /// Returns the fixed obstacles and all other robots, as obstacles for rays.
     pub(crate) fn all(&self) -> Reached<'_> {
         Reached { others: &self.others.heard, standing: true }
     }
 
-    /// Returns `true` if a ray of this length from `from` may meet a fixed obstacle.
+    /// Returns `true` if a ray of this length from `from` may hit a fixed obstacle.
     pub(crate) fn stand_in_reach(&self, from: Place, most: f64) -> bool {
         self.standing.grid.is_in_reach(from, most)
     }
 
-    /// Returns the surface that a ray in the direction of the unit vector `way` meets; `None` if it meets none within
+    /// Returns the surface that a ray in the direction of the unit vector `way` hits; `None` if there is no hit within
     /// `most` metres. Considers only moving objects and the obstacles in `reached`.
     pub(crate) fn found_among(&self, reached: Reached<'_>, from: Place, way: Place, most: f64) -> Option<Surface> {
         let at = |range: f64| Place { x: from.x + range * way.x, y: from.y + range * way.y };
         let other = nearest_of(reached.others, from, way, most);
-        // What lies beyond the nearest robot is not looked for.
+        // Only obstacles nearer than the nearest robot are searched.
         let reach = other.map_or(most, |(range, _)| range);
         let Standing { segments, ends, roughs, grid } = &*self.standing;
         let hit = reached.standing.then(|| grid.ray(from, way, reach)).flatten();
@@ -170,15 +170,15 @@ impl Walls {
         least
     }
 
-    /// Returns the distance from `at` to the nearest moving object or other robot, in metres; infinite if there is
-    /// none.
+    /// Returns the distance from `at` to the nearest moving object or other robot, in metres; infinite if there is no
+    /// such object.
     fn moving(&self, at: Place) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.distance(at, least).min(least));
         self.others.touched.iter().fold(least, |least, other| least.min(other.distance(at)))
     }
 
-    /// Returns the distance between a body and the nearest obstacle, in metres, or `reach` if that is less; negative
-    /// where they overlap.
+    /// Returns the distance between a body and the nearest obstacle, in metres, or `reach` if that is less; negative if
+    /// they overlap.
     #[must_use]
     pub fn gap(&self, body: &Footprint, reach: f64) -> f64 {
         self.standing_gap(body, reach).min(self.moving_gap(body))
@@ -191,7 +191,8 @@ impl Walls {
         }
         let mut least = reach;
         let touches = |segment: &Segment, least: f64| {
-            // Most walls are further away than the circle around the body.
+            // Most walls are further away than the nearest one found so far; the circle around the body suffices to
+            // exclude them.
             let far = apart(segment.nearest(body.at()), body.at()) - body.form.radius();
             if far < least { least.min(body.contact(segment).gap) } else { least }
         };
@@ -200,7 +201,7 @@ impl Walls {
     }
 
     /// Returns the distance between a body and the nearest moving object or other robot, in metres; infinite if there
-    /// is none.
+    /// is no such object.
     pub(crate) fn moving_gap(&self, body: &Footprint) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.gap(body, least).min(least));
         self.others.touched.iter().fold(least, |least, other| least.min(body.contact_with(other).gap))
@@ -217,7 +218,7 @@ impl Walls {
         nearest.1
     }
 
-    /// Calls `take` with the contact of a body with each obstacle that may lie within `reach` of it.
+    /// Calls `take` with the contact of a body with each obstacle that may be within `reach` of the body.
     pub(crate) fn contacts(&self, body: &Footprint, reach: f64, mut take: impl FnMut(Contact)) {
         let around = body.form.radius() + reach;
         self.standing.grid.near(body.at(), around, |_, segment| take(body.contact(segment)));
@@ -227,7 +228,7 @@ impl Walls {
         self.others.touched.iter().for_each(|other| take(body.contact_with(other)));
     }
 
-    /// Returns the displacement of each of the moving objects from where it begins; `None` for an open door.
+    /// Returns the displacement of each moving object from its first position; `None` for an open door.
     pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Place>> {
         self.moving.iter().map(Moving::gone)
     }
@@ -237,7 +238,7 @@ impl Walls {
         self.moving.iter().filter_map(Moving::around)
     }
 
-    /// Returns the other robots that rays from `from` may meet at angles of at most `half_cone` from `axis`.
+    /// Returns the other robots that rays from `from` may hit at angles of at most `half_cone` from `axis`.
     pub(crate) fn others_in(&self, from: Place, axis: Radians, half_cone: Radians) -> Vec<Footprint> {
         if self.others.heard.is_empty() {
             return Vec::new();
@@ -246,7 +247,7 @@ impl Walls {
         let is_near = |other: &&Footprint| {
             let (x, y) = (other.pose.x.0 - from.x, other.pose.y.0 - from.y);
             let (ahead, aside) = (x * along.1 + y * along.0, (x * along.0 - y * along.1).abs());
-            // The cone lies on the near sides of the line across its tip and of the line along its edge.
+            // The cone is on the near side of two lines: one across its tip, and one along its edge.
             let (behind, beside) = (-ahead, aside * edge.1 - ahead * edge.0);
             behind.max(beside) <= other.form.radius() + BESIDE
         };
@@ -255,7 +256,7 @@ impl Walls {
         others
     }
 
-    /// Sets the places of the other robots.
+    /// Sets the positions of the other robots.
     pub(crate) fn put_others(&mut self, others: &[Footprint]) {
         for known in [&mut self.others.heard, &mut self.others.touched] {
             known.clear();
@@ -263,17 +264,17 @@ impl Walls {
         }
     }
 
-    /// Exchanges the other robots with the robots in `others`.
+    /// Swaps the other robots with those in `others`.
     pub(crate) fn swap_others(&mut self, others: &mut Others) {
         std::mem::swap(&mut self.others, others);
     }
 
-    /// Returns `true` if any object in the world can move.
+    /// Returns `true` if the world has moving objects.
     pub(crate) fn move_at_all(&self) -> bool {
         !self.moving.is_empty()
     }
 
-    /// Advances all moving objects by `seconds`, but moves none of them into `body`.
+    /// Advances all moving objects by `seconds`, without moving any of them into `body`.
     pub(crate) fn advance(&mut self, seconds: f64, body: &Footprint) {
         for thing in &mut self.moving {
             thing.advance(seconds, body);
@@ -281,7 +282,7 @@ impl Walls {
     }
 }
 
-/// Returns the robot that a ray in the unit direction `way` meets first, and its distance; `None` if the ray meets none
+/// Returns the robot that a ray in the unit direction `way` hits first, and its distance; `None` if there is no hit
 /// within `most` metres.
 fn nearest_of(others: &[Footprint], from: Place, way: Place, most: f64) -> Option<(f64, &Footprint)> {
     let mut nearest = (most, None);
@@ -299,7 +300,7 @@ fn segments(world: &World) -> Vec<Segment> {
 }
 
 /// Returns the wall or box of `world` that is nearest to `body`, with all moving objects at their first positions;
-/// `None` in a world without walls.
+/// `None` if the world has no walls.
 pub(crate) fn nearest<'w>(world: &'w World, body: &Footprint) -> Option<&'w Outline> {
     let distances =
         world.everything().map(|(outline, from, to)| (outline, body.contact(&Segment::between(from, to)).gap));

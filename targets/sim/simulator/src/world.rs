@@ -12,7 +12,7 @@ use crate::place::Place;
 /// Maximum number of walls and sides; preparing a million of them takes a second.
 const SEGMENTS_MOST: usize = 1_000_000;
 
-/// The surroundings of the simulated robot. All coordinates are finite and no wall has length zero.
+/// Surroundings of the simulated robot. All coordinates are finite, and every wall has a positive length.
 #[derive(Debug, Clone, PartialEq)]
 pub struct World {
     /// Walls, boxes and discs that never move.
@@ -21,16 +21,16 @@ pub struct World {
     pub things: Vec<Thing>,
     /// Default start pose.
     pub start: Pose,
-    /// The goal; `None` if the world has none.
+    /// Goal; `None` if the world has no goal.
     pub goal: Option<Goal>,
-    /// The charger; `None` if the world has none.
+    /// Charger; `None` if the world has no charger.
     pub charger: Option<Charger>,
     /// Sources of sound.
     pub sounds: Vec<SoundSource>,
-    /// Reverberation time, in seconds, in which sound decays by 60 dB; 0 if nothing reflects sound.
+    /// Reverberation time in which sound decays by 60 dB, in seconds; 0 if nothing reflects sound.
     pub t60: f64,
-    /// Default roughness of other robots and of outlines and objects of a file: from 0 (as smooth as the body's
-    /// model) to 1 (heard by sonars at any angle).
+    /// Default roughness of the other robots and of the outlines and objects of a file, from 0 (as smooth as in the
+    /// body's model) to 1 (heard by sonars at any angle).
     pub rough: f64,
     /// Number of leading `outlines` that are contours of a map; a place inside an odd number of contours is solid.
     pub(crate) contours: usize,
@@ -64,7 +64,7 @@ impl World {
     }
 
     /// Returns the name of the wall, box or disc that keeps robots of this radius, in metres, off a charger; `None` if
-    /// the charger can be reached. The obstacle surrounds the position of a robot on the charger, or is closer to it
+    /// the charger can be reached. The obstacle contains the position of a robot on the charger, or is closer to it
     /// than the radius.
     pub(crate) fn obstacle_at(&self, charger: &Charger, radius: f64) -> Option<&str> {
         let place = Place::of(&charger.pose);
@@ -79,7 +79,7 @@ impl World {
         self.solid(place).or_else(|| near().map(|(outline, ..)| outline)).map(|outline| outline.name.as_str())
     }
 
-    /// Checks that a world does not have too many walls and sides.
+    /// Checks that the world does not have too many walls and sides.
     pub(crate) fn check_size(&self) -> Result<(), String> {
         match self.everything().count() {
             count if count > SEGMENTS_MOST => {
@@ -89,7 +89,7 @@ impl World {
         }
     }
 
-    /// Returns all corners: of the fixed outlines, and of the moving objects at each of their stops.
+    /// Returns all corners of the fixed outlines, and of the moving objects at each of their stops.
     pub fn places(&self) -> impl Iterator<Item = Place> {
         let standing = self.outlines.iter().flat_map(|outline| outline.points.iter().copied());
         standing.chain(self.things.iter().flat_map(Thing::places))

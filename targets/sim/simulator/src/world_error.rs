@@ -1,12 +1,12 @@
-//! The defect of a file that describes a world.
+//! The error in a world file.
 
 use std::fmt;
 
-/// The defect of a world file, displayed as `file:line:column: sentence`.
+/// An error in a world file, displayed as `file:line:column: sentence`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WorldError {
     file: String,
-    /// Line and column, from 1; `None` for a defect of the whole file.
+    /// Line and column, counted from 1; `None` if the error concerns the whole file.
     place: Option<(usize, usize)>,
     what: String,
 }
@@ -24,7 +24,7 @@ impl fmt::Display for WorldError {
 impl std::error::Error for WorldError {}
 
 impl WorldError {
-    /// Returns the defect at a line and column, from 1; `None` for a defect of the whole file.
+    /// Returns the error at a line and column, counted from 1; `None` if the error concerns the whole file.
     pub(crate) fn new(file: &str, place: Option<(usize, usize)>, what: impl Into<String>) -> Self {
         Self { file: file.to_owned(), place, what: what.into() }
     }

@@ -1,8 +1,7 @@
-//! Reads a world from TOML and checks that every coordinate is finite, in metres, and that every wall, box and
-//! disc has a size.
+//! Reads a world from TOML, and checks that every coordinate is finite, in metres, and that every wall, box and disc
+//! has a positive size.
 //!
-//! Obstacles may overlap and then act as one. Moving objects pass through fixed obstacles, but never into the
-//! robot.
+//! Obstacles may overlap and then act as one. Moving objects pass through fixed obstacles, but never into the robot.
 
 mod outlines;
 mod sounds;
@@ -18,10 +17,10 @@ use crate::world_error::WorldError;
 use outlines::{Stands, Unit};
 use text::WorldText;
 
-/// Maximum size of the text, in bytes; reading a text takes up to 70 times its size in memory.
+/// Maximum size of the text, in bytes; parsing takes up to 70 times the size in memory.
 const BYTES_MOST: usize = 8 << 20;
 
-/// A defect of the text: its byte range, `None` for the whole text, and a message.
+/// An error in the text: its byte range (`None` for the whole text), and a message.
 pub(crate) struct Wrong(pub(crate) Option<Range<usize>>, pub(crate) String);
 
 impl Wrong {
@@ -42,7 +41,7 @@ fn read(text: &str) -> Result<World, Wrong> {
         return Err(Wrong(None, format!("a world of {bytes} bytes is too large; expected at most {BYTES_MOST}")));
     }
     let written: WorldText = toml::from_str(text).map_err(|error| {
-        // In the words of the file's author.
+        // Uses the terms that the author of the file knows.
         let what = error.message().replace('\n', " ").replace("expected f64", "expected a number");
         Wrong(error.span(), what)
     })?;
@@ -81,7 +80,7 @@ fn read(text: &str) -> Result<World, Wrong> {
     Ok(world)
 }
 
-/// Returns the line and column of a byte of `text`, from 1; columns count characters.
+/// Returns the line and column of a byte of `text`, counted from 1; columns count characters.
 fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     let before = text.get(..byte).unwrap_or(text);
     let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);

@@ -1,12 +1,12 @@
-//! Creates worlds from texts: the worlds that come with the simulator, a user's TOML, and ROS maps.
+//! Creates worlds from texts: the built-in worlds of the simulator, a user's TOML, and ROS maps.
 
 use crate::ros_map::Header;
 use crate::world::World;
 use crate::world_error::WorldError;
 use crate::world_file;
 
-/// The names and texts of the worlds that come with the simulator. The first is the floor of the paper's tour,
-/// including the box in the hallway.
+/// Names and texts of the built-in worlds. The first is the floor of the paper's tour, including the box in the
+/// hallway.
 const WORLDS: [(&str, &str); 4] = [
     ("office", include_str!("../worlds/office.toml")),
     ("maze", include_str!("../worlds/maze.toml")),
@@ -15,10 +15,10 @@ const WORLDS: [(&str, &str); 4] = [
 ];
 
 impl World {
-    /// Returns the world of a TOML text; `file` is the name of the file in error messages.
+    /// Returns the world that a TOML text describes; `file` is the name of the file in error messages.
     ///
     /// # Errors
-    /// Fails with the error of the text, and its place.
+    /// Returns the first error in the text, with its position.
     pub fn parse(file: &str, text: &str) -> Result<Self, WorldError> {
         world_file::parse(file, text)
     }
@@ -27,7 +27,7 @@ impl World {
     /// are their names in error messages.
     ///
     /// # Errors
-    /// Fails with the defect of either file, and its place.
+    /// Returns the first error in either file, with its position.
     pub fn of_map((file, text): (&str, &str), (image, bytes): (&str, &[u8])) -> Result<Self, WorldError> {
         Header::parse(file, text)?.world(image, bytes)
     }
@@ -35,20 +35,20 @@ impl World {
     /// Returns the office floor of the paper's tour.
     ///
     /// # Errors
-    /// Never fails, as a test reads the world. Its file has the same format as a user's file.
+    /// Does not fail, as a test confirms: the world is a file in the same format as a user's file.
     pub fn office() -> Result<Self, WorldError> {
         let [(_, office), ..] = WORLDS;
         Self::parse("the office floor", office)
     }
 
-    /// Returns the world `name` that comes with the simulator; `None` if there is no such world.
+    /// Returns the built-in world `name`; `None` if there is no such world.
     #[must_use]
     pub fn named(name: &str) -> Option<Result<Self, WorldError>> {
         let (name, text) = WORLDS.iter().find(|(known, _)| *known == name)?;
         Some(Self::parse(name, text))
     }
 
-    /// Returns the names of the worlds that come with the simulator.
+    /// Returns the names of the built-in worlds.
     pub fn names() -> impl Iterator<Item = &'static str> {
         WORLDS.iter().map(|(name, _)| *name)
     }

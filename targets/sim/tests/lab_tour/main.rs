@@ -1,5 +1,4 @@
-//! Tests of the paper's tour from lab 2 through lab 1 to the office, on the floor made for it (paper, section
-//! V, Fig. 10).
+//! Tests the paper's tour from lab 2 through lab 1 to the office, on the floor made for it (paper, section V, Fig. 10).
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking, and tells how many arrived")]
 
 mod plan;
@@ -70,7 +69,7 @@ fn run(robot: &mut Observed) -> Vec<End> {
         let over = matches!(step, Turn::Over);
         input = step.input();
         if over {
-            // The words of the executable that draws the picture of the book.
+            // Same text as in the executable that draws the picture of the book.
             let by = "completed (lab_tour.mdle:30)";
             robot.ended(&Ended { plan: "LabTour", is_over: true, by, t });
             break;
@@ -87,7 +86,7 @@ fn tour(start: Pose, seed: Option<u64>) -> Vec<End> {
     run(&mut Simulated::new(&world, start, seed, PERIOD).expect("a start on the floor").into())
 }
 
-/// Returns the robot that an executable drives when it is started with these options.
+/// Returns the robot that an executable creates from these options.
 fn connected(options: &[&str]) -> Observed {
     let matches = Sim::arguments(view_options(Command::new("tour").no_binary_name(true))).get_matches_from(options);
     Sim::connect(&matches, PERIOD, &StopRequest::default()).expect("good options")
@@ -102,7 +101,7 @@ fn table(ends: &[End]) -> String {
     })
 }
 
-/// The zone in which the robot should be when an atom ends.
+/// Zone in which the robot has to be when an atom ends.
 struct Zone {
     x: [f64; 2],
     y: [f64; 2],
@@ -130,7 +129,7 @@ fn zone(atom: u64) -> Option<Zone> {
     Some(Zone { x, y, heading })
 }
 
-/// Returns the faults of a tour; empty if every atom ended in its zone.
+/// Returns the errors of a tour; empty if every atom ended in its zone.
 fn faults(ends: &[End]) -> Vec<String> {
     let mut faults = Vec::new();
     if ends.iter().map(|end| end.atom).ne(1..=13) {
@@ -148,14 +147,14 @@ fn faults(ends: &[End]) -> Vec<String> {
     faults
 }
 
-/// Returns a start pose up to 10 cm and 5 degrees off the ideal one.
+/// Returns a start pose that deviates by up to 10 cm and 5 degrees from the ideal one.
 fn off(seed: u64) -> Pose {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut within = |most: f64| most * ((random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);
     Pose { x: Meters(within(0.1)), y: Meters(within(0.1)), theta: Radians::from_degrees(within(5.0)) }
 }
 
-/// Returns the number of tours with these seeds that arrive; prints the faults of the others.
+/// Returns the number of tours with these seeds that arrive; prints the errors of the others.
 fn arrived(seeds: std::ops::Range<u64>, noisy: bool) -> usize {
     let count = seeds.clone().count();
     let arrived = seeds.filter(|seed| {
@@ -196,7 +195,7 @@ fn a_start_that_is_a_little_off_arrives_too() {
     assert_eq!(arrived(0..100, false), 100);
 }
 
-/// Beside a jamb no heading has equal ranges; from this start, `align 11 13` once never ended.
+/// Beside a door jamb, no heading has equal ranges; from this start, `align 11 13` once never ended.
 #[test]
 fn a_tour_past_a_jamb_ends() {
     let start = Pose { x: Meters(-0.08), y: Meters(0.06), theta: Radians::from_degrees(-4.0) };
@@ -222,8 +221,8 @@ fn a_scout_arrives_whose_sonars_fire_in_turn_and_miss_and_whose_wheels_slip() {
     assert!(arrived.count() >= 19);
 }
 
-/// With the seeds 9960000..9960300, with which no parameter was tuned, a Scout arrives in 296, 299, 300 and 280 tours
-/// where walls have `rough` 0, 0.25, 0.5 and 1, and an ATRV-mini in 292, 298, 294 and 276.
+/// With the seeds 9960000..9960300, which were not used to tune parameters, a Scout arrives in 296, 299, 300 and 280
+/// tours where walls have `rough` 0, 0.25, 0.5 and 1, and an ATRV-mini in 292, 298, 294 and 276.
 #[test]
 fn both_bodies_arrive_however_rough_walls_are() {
     let office = include_str!("../../worlds/office.toml");
@@ -257,7 +256,8 @@ fn the_same_options_draw_the_same_bytes() {
     }
 }
 
-/// The picture in the book was drawn by an executable from mdlec, that is, with optimisation and with the emitted plan.
+/// The picture in the book was drawn by an executable that mdlec built, that is, with optimisation and with the emitted
+/// plan.
 #[test]
 fn the_book_shows_the_tour_as_it_is_driven_without_optimisation() {
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("office.svg");

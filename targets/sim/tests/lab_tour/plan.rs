@@ -7,14 +7,14 @@ use mdle_runtime::{
 };
 use mdle_sim::alphabet::{Align, AtIsection, Bumper, Go, GoAvoid, Input, Output, Rotate};
 
-/// An atom's own interrupt.
+/// Interrupt of an atom itself.
 enum Until {
     At([u8; 4]),
     Seconds(u64),
     Null,
 }
 
-/// An atom's law; angles are in degrees and speeds in cm/s.
+/// Law of an atom; angles are in degrees and speeds in cm/s.
 enum Does {
     GoAvoid(f64),
     Go,
@@ -22,7 +22,7 @@ enum Does {
     Rotate(f64),
 }
 
-/// The atoms of the two plans.
+/// Atoms of the two plans.
 const ATOMS: [(Until, Does); 13] = [
     (Until::At([0, 1, 0, 0]), Does::GoAvoid(90.0)),
     (Until::At([0, 0, 1, 0]), Does::Go),
@@ -38,7 +38,7 @@ const ATOMS: [(Until, Does); 13] = [
     (Until::At([0, 1, 0, 0]), Does::GoAvoid(180.0)),
     (Until::Seconds(10), Does::Rotate(90.0)),
 ];
-/// The first atom of the second plan, whose frame is turned.
+/// Number of the first atom of the second plan, whose frame is turned.
 const SECOND: u32 = 8;
 
 /// The running law.

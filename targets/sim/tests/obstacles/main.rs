@@ -1,8 +1,7 @@
-//! Tests of `goAvoid` in narrow places: doorways, boxes in hallways, corners, rooms, and a person who walks
-//! across.
+//! Tests `goAvoid` in narrow places: doorways, boxes in hallways, corners, rooms, and a person who walks across.
 //!
 //! Each test tries a few seeds. `MDLE_LONG=10 cargo test --release -p mdle-sim --test obstacles -- --nocapture` tries
-//! ten times as many and prints how they end; `MDLE_FIRST` is the first seed.
+//! ten times as many and prints their outcomes; `MDLE_FIRST` is the first seed.
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking, and tells what happened")]
 
 mod chance;
@@ -15,12 +14,12 @@ use mdle_sim::{Body, Make};
 use room::{Outcome, drive};
 use worlds::Crossing;
 
-/// Returns the whole number in the environment variable `name`, or `usual` if the variable is not set.
+/// Returns the whole number in the environment variable `name`; `usual` if the variable is not set.
 fn number(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect("a whole number"))
 }
 
-/// Panics unless at least `share` percent of some runs arrive without contact.
+/// Panics unless at least `share` percent of the runs arrive without contact.
 fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, share: u64) {
     let (first, count) = (number("MDLE_FIRST", 5000), 12 * number("MDLE_LONG", 1));
     let (mut clean, mut touched) = (0, 0);
@@ -81,7 +80,7 @@ fn the_first_passages_of_the_maze_are_driven() {
     assert_clean("maze", worlds::maze, Body::Atrv, 90);
 }
 
-/// Before `goAvoid` waited for the walker, 14 of 40 ideal robots and 19 of 40 Scouts met the walker.
+/// Before `goAvoid` waited for the walker, 14 of 40 ideal robots and 19 of 40 Scouts collided with the walker.
 #[test]
 fn somebody_who_walks_across_is_waited_for() {
     assert_clean("hall", worlds::hall, Body::Ideal, 90);

@@ -1,4 +1,4 @@
-//! Tests with the walker of the world `hall`: a robot that meets the walker would also have met the walker if it had
+//! Tests collisions with the walker in the world `hall`: a robot that collides would also have collided if it had
 //! stopped shortly before.
 
 use std::time::Duration;
@@ -17,22 +17,22 @@ use crate::worlds::{Crossing, hall};
 const PERIOD: Duration = Duration::from_millis(100);
 /// Number of turns after which a run counts as failed: three minutes.
 const TURNS: u64 = 1800;
-/// Number of turns after the contact for which a robot at rest is watched; by then the walker has passed.
+/// Number of turns after the contact for which a stationary robot is observed; by then the walker has passed.
 const PASSED: u64 = 50;
 /// Start and radius of the walker, in metres, as in the world.
 const WALKER: (Place, f64) = (Place { x: 8.0, y: 1.0 }, 0.25);
 
 /// Returns `true` if the obstacle that the robot's bumper reports is the walker.
 fn is_walker(robot: &Simulated) -> bool {
-    // The door of the world is the other thing that moves.
+    // The only other moving object of the world is a door.
     let Some(Some(gone)) = robot.gone().next() else { return false };
     let (pose, radius) = (robot.pose(), robot.footprint().form.radius());
     let (dx, dy) = (WALKER.0.x + gone.x - pose.x.0, WALKER.0.y + gone.y - pose.y.0);
     libm::hypot(dx, dy) < radius + WALKER.1 + 0.03
 }
 
-/// Drives across the hall, and stands still from turn `stands` on. Returns the turn in which the robot meets the
-/// walker; `None` if it does not.
+/// Drives across the hall, and stops from turn `stands` on. Returns the turn in which the robot collides with the
+/// walker; `None` if it does not collide.
 fn meets(body: Body, seed: u64, stands: u64) -> Option<u64> {
     crosses(body, seed, stands, &hall(body, seed))
 }
@@ -61,12 +61,13 @@ fn crosses(body: Body, seed: u64, stands: u64, Crossing { world, to }: &Crossing
     None
 }
 
-/// Returns `true` if the robot avoids this contact by standing still from `before` turns before it on.
+/// Returns `true` if the robot avoids the contact in turn `contact` by stopping `before` turns earlier.
 fn avoids(body: Body, seed: u64, contact: u64, before: u64) -> bool {
     meets(body, seed, contact.saturating_sub(before)).is_none_or(|turn| turn > contact + PASSED)
 }
 
-/// Checks that the walker is noticed, so that the test below can fail. The walker walks from (8, 1) to (8, 9).
+/// Checks that a collision with the walker is detected, so that the test below can fail. The walker walks from (8, 1)
+/// to (8, 9).
 #[test]
 fn a_robot_in_the_way_of_the_walker_is_met() {
     for body in [Body::Ideal, Body::Scout, Body::Atrv] {
@@ -78,9 +79,9 @@ fn a_robot_in_the_way_of_the_walker_is_met() {
     }
 }
 
-/// The robot stands still from 1 or 2 s before each contact on. From 3 s before it on, standing still would have
-/// avoided one contact of an ATRV-mini in 120 runs; from 5 s before it on, the robot would stand a metre away. The test
-/// prints the number of contacts that each time would have avoided.
+/// Checks that stopping 1 or 2 s before a contact would not have avoided it. Stopping 3 s before would have avoided one
+/// contact of an ATRV-mini in 120 runs; 5 s before, the robot is still a metre away. The test prints the number of
+/// contacts that each time would have avoided.
 #[test]
 fn standing_still_would_not_avoid_the_walker() {
     let (first, count) = (number("MDLE_FIRST", 5000), 12 * number("MDLE_LONG", 1));

@@ -1,4 +1,4 @@
-//! Draws the trips of several robots: a floor for each robot with a line for each trip, as in Fig. 12 of the paper.
+//! Draws the trips of several robots: one floor per robot, and one line per trip, as in Fig. 12 of the paper.
 
 use mdle_runtime::Pose;
 use svg::Document;
@@ -13,31 +13,31 @@ use crate::place::Place;
 
 /// Width of a picture, in pixels.
 const WIDTH: f64 = 960.0;
-/// Width of the numbers at the left of a floor, and of the list of trips at its right, in pixels.
+/// Width of the labels at the left of a floor, and of the list of trips at its right, in pixels.
 const SIDES: (f64, f64) = (40.0, 230.0);
 /// Maximum height of a floor, in pixels.
 const HIGH: f64 = 420.0;
-/// Height of the numbers below a floor, in pixels.
+/// Height of the labels below a floor, in pixels.
 const BELOW: f64 = 34.0;
 /// Height of a line of text, in pixels.
 const LINE: f64 = 20.0;
-/// Maximum number of trips that are listed.
+/// Maximum number of listed trips.
 const LISTED: usize = 16;
-/// Distance between two circles on the first trip, in pixels.
+/// Minimum distance between two circles on the first trip, in pixels.
 const CIRCLES: f64 = 14.0;
 /// Minimum length of a trip, in metres; a shorter trip is not listed.
 const SHORTEST: f64 = 0.2;
-/// Minimum distance between two numbers of an axis, in pixels.
+/// Minimum distance between two labels of an axis, in pixels.
 const APART: f64 = 50.0;
 
-/// The trips of several robots: the paths driven under the laws `path` and `Follow`.
+/// Trips of several robots: the paths driven under the laws `path` and `Follow`.
 #[derive(Debug, Clone)]
 pub struct TripDrawing {
     title: String,
     robots: Vec<RobotTrips>,
 }
 
-/// The trips of a robot.
+/// Trips of a robot.
 #[derive(Debug, Clone)]
 struct RobotTrips {
     name: String,
@@ -46,8 +46,7 @@ struct RobotTrips {
     is_on_trip: bool,
 }
 
-/// Returns the length of a path driven, in metres, and the percentage by which it is longer than the distance between
-/// its ends.
+/// Returns the length of a path, in metres, and the percentage by which it exceeds the distance between its ends.
 fn figures(way: &[Place]) -> (f64, f64) {
     let apart = |one: &Place, other: &Place| libm::hypot(one.x - other.x, one.y - other.y);
     let length: f64 = way.windows(2).map(|pair| apart(&pair[0], &pair[1])).sum();
@@ -62,7 +61,7 @@ impl TripDrawing {
         Self { title: title.to_owned(), robots: Vec::new() }
     }
 
-    /// Records that the robot `name` is at `pose` while this law runs; `begins` is `true` if the law has just begun.
+    /// Records that the robot `name` is at `pose` while `law` runs; `begins` is `true` if the law has just begun.
     pub fn went(&mut self, name: &str, pose: &Pose, law: &str, begins: bool) {
         let number = self.robots.iter().position(|robot| robot.name == name).unwrap_or_else(|| {
             self.robots.push(RobotTrips { name: name.to_owned(), trips: Vec::new(), is_on_trip: false });
@@ -105,7 +104,7 @@ impl TripDrawing {
     }
 }
 
-/// The part of the floor that all panels show, and its size in pixels.
+/// Part of the floor that all panels show, and its size in pixels.
 struct Floor {
     x: (f64, f64),
     y: (f64, f64),
@@ -120,12 +119,12 @@ impl Floor {
         Self { x, y, scale, height: ((y.1 - y.0) * scale).max(LINE * LISTED as f64 / 2.0) }
     }
 
-    /// Returns the pixel of a place, on the floor whose upper edge is at `top`.
+    /// Returns the pixel of a point of the floor; `top` is the height of the floor's upper edge.
     fn at(&self, place: &Place, top: f64) -> Pixel {
         (MARGIN + SIDES.0 + (place.x - self.x.0) * self.scale, top + (self.y.1 - place.y) * self.scale)
     }
 
-    /// Draws the floor of a robot, with its upper end at `top`.
+    /// Draws the floor of a robot, with its upper edge at `top`.
     fn drawn(&self, robot: &RobotTrips, top: f64) -> Group {
         let name = text(&robot.name, (MARGIN + SIDES.0, top + LINE / 2.0), "start").set("font-weight", "bold");
         let top = top + LINE;
@@ -179,7 +178,7 @@ fn circles(pixels: &[Pixel]) -> Group {
     })
 }
 
-/// Returns the line of a trip in the list.
+/// Draws the entry of a trip in the list.
 fn listed(number: usize, trip: &[Place], (x, y): Pixel) -> Group {
     let (length, excess) = figures(trip);
     let words = format!("trip {}: {length:.2} m, {excess:.1} % longer", number + 1);

@@ -1,13 +1,13 @@
-//! The part of the floor that a plot shows: the path driven, and the room around it.
+//! The part of the floor that a plot shows: the path driven, and the floor around it.
 
 use crate::trail::Trail;
 use crate::world::World;
 
 /// Margin around walls, in metres.
 const AROUND: f64 = 0.4;
-/// Margin of floor that is shown around the path driven, in metres; smaller where the world ends.
+/// Margin around the path driven, in metres; smaller where the world ends.
 const ROOM: f64 = 2.0;
-/// Fraction of the world from which the whole world is shown instead of a part of this size.
+/// Minimum fraction of the world's area: a view that covers this fraction is replaced by the whole world.
 const MOST: f64 = 0.5;
 
 /// A rectangle of the floor, in metres.
@@ -18,10 +18,10 @@ pub(super) struct View {
 }
 
 impl View {
-    /// Returns the view of the path driven with the floor around it, or of the whole world if that is at most twice as
-    /// large.
+    /// Returns the view of the path driven with the floor around it, or of the whole world if the world is at most
+    /// twice as large.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
-        // Without a world there is only what the robot has heard.
+        // Without a world, the view is based on the echoes that the robot has heard.
         let heard = || trail.echoes.iter().copied().filter(|_| world.places().next().is_none());
         let places = || world.places().chain(trail.places()).chain(heard());
         let all = Self { x: range(places().map(|place| place.x)), y: range(places().map(|place| place.y)) };
@@ -36,7 +36,7 @@ impl View {
     }
 }
 
-/// Returns the minimum and the maximum of some coordinates.
+/// Returns the minimum and the maximum of `coordinates`.
 pub(super) fn range(coordinates: impl Iterator<Item = f64>) -> (f64, f64) {
     coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), coordinate| {
         (least.min(coordinate), most.max(coordinate))

@@ -1,22 +1,22 @@
-//! Finds the contours of the occupied pixels of a map, without the pixel steps of slanted lines.
+//! Finds the contours of the occupied pixels of a map, and removes the pixel steps of slanted lines.
 
-/// Maximum distance, in pixels, between a line and the pixel corners that it replaces. The steps of a slanted
-/// line deviate by up to 1, and by a little more where the line begins at an unfavourable corner.
+/// Maximum distance, in pixels, between a line and the pixel corners that it replaces. The steps of a slanted line
+/// deviate by up to 1, and by a little more if the line begins at an unfavourable corner.
 const TOLERANCE: f64 = 1.25;
-/// Maximum number of pixel sides between occupied and free: 200 km of walls at 5 cm.
+/// Maximum number of pixel sides between occupied and free pixels: 200 km of walls at 5 cm.
 const SIDES_MOST: usize = 4_000_000;
 /// Maximum number of corners that are smoothed together, since the time grows with the square of this number.
 const TOGETHER: usize = 1024;
 
-/// A corner of pixels, given by the column and the row of its grid lines.
+/// A corner of a pixel, given by the column and the row of its grid lines.
 type Corner = (i32, i32);
 
-/// The possible steps from a corner, in the order of the bits of [`Sides::steps`]. If a line can begin with either of
-/// two steps, it begins with the earlier one, which is the step of the upper pixel.
+/// Possible steps from a corner, in the order of the bits of [`Sides::steps`]. If a line can begin with either of two
+/// steps, it begins with the earlier one, which belongs to the upper pixel.
 const STEPS: [Corner; 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
 
-/// Returns closed lines around the occupied pixels, each ending where it began, in an order that depends only on the
-/// image.
+/// Returns closed lines around the occupied pixels. Each line ends where it began; the order of the lines depends only
+/// on the image.
 ///
 /// # Errors
 /// Fails if the image has more sides than `SIDES_MOST`.
@@ -33,7 +33,7 @@ pub(super) fn contours(
         while let Some(step) = sides.taken(here, came) {
             let next = (here.0 + step.0, here.1 + step.1);
             if step == came {
-                // On a straight line only the ends matter.
+                // Inner corners of a straight line are not needed.
                 line.pop();
             }
             (came, here) = (step, next);
@@ -47,12 +47,12 @@ pub(super) fn contours(
     Ok(loops)
 }
 
-/// The pixel sides that have an occupied pixel on their left and none on their right, as steps from each corner.
+/// Pixel sides with an occupied pixel on their left and a free one on their right, as steps from each corner.
 struct Sides {
     /// Steps from each corner, as bits; column by column.
     steps: Vec<u8>,
     rows: usize,
-    /// Corner before which no corner has steps left.
+    /// Index before which all corners have no steps left.
     next: usize,
 }
 
@@ -90,8 +90,7 @@ impl Sides {
         Ok(Self { steps, rows, next: 0 })
     }
 
-    /// Returns the first corner that has steps left, in the order of columns and then of rows; `None` if no corner has
-    /// any.
+    /// Returns the first corner that has steps left, ordered by columns and then by rows; `None` if no steps are left.
     fn first(&mut self) -> Option<Corner> {
         let ahead = self.steps.get(self.next..)?.iter().position(|steps| *steps != 0)?;
         self.next += ahead;
@@ -99,7 +98,7 @@ impl Sides {
         Some(((self.next / self.rows) as i32, (self.next % self.rows) as i32))
     }
 
-    /// Removes and returns the step that continues from `here`; `None` if there is none. Where two pixels touch at a
+    /// Removes and returns the step that continues from `here`; `None` if there is no step. Where two pixels touch at a
     /// corner, the step continues along the same pixel.
     fn taken(&mut self, here: Corner, came: Corner) -> Option<Corner> {
         let steps = self.steps.get_mut(here.0 as usize * self.rows + here.1 as usize)?;
@@ -111,14 +110,14 @@ impl Sides {
     }
 }
 
-/// Returns the line with fewer corners: no omitted corner is further from the new line than the tolerance.
+/// Simplifies a line: no omitted corner is further from the new line than the tolerance.
 fn smoothed(line: &[Corner]) -> Vec<Corner> {
     let far = |from: Corner| {
         let distance = |to: &Corner| i64::from(to.0 - from.0).pow(2) + i64::from(to.1 - from.1).pow(2);
         (0..line.len()).max_by_key(|number| line.get(*number).map_or(0, distance)).unwrap_or(0)
     };
     let Some(first) = line.first() else { return Vec::new() };
-    // A closed line is split where it is furthest from its beginning, and where it is long.
+    // A closed line is split at the corner furthest from its beginning, and at intervals if it is long.
     let split = far(*first);
     let mut kept = vec![false; line.len()];
     for (from, to) in [(0, split), (split, line.len() - 1)] {
@@ -132,11 +131,11 @@ fn smoothed(line: &[Corner]) -> Vec<Corner> {
             begin = end;
         }
     }
-    // What is thinner than the tolerance becomes a line there and back: a wall without thickness.
+    // A shape thinner than the tolerance becomes a line there and back, that is, a wall without thickness.
     line.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(corner, _)| *corner).collect()
 }
 
-/// Keeps the corners that a line needs between two of its corners (Douglas and Peucker, 1973).
+/// Marks the corners that are needed between the corners `from` and `to` of a line (Douglas and Peucker, 1973).
 fn keep(line: &[Corner], from: usize, to: usize, kept: &mut [bool]) {
     let mut open = vec![(from, to)];
     while let Some((from, to)) = open.pop() {
@@ -158,7 +157,7 @@ fn keep(line: &[Corner], from: usize, to: usize, kept: &mut [bool]) {
     }
 }
 
-/// Returns the distance of a corner from the line between two others.
+/// Returns a function that computes the distance of a corner from the line through `from` and `to`.
 fn distance(from: Corner, to: Corner) -> impl Fn(Corner) -> f64 {
     let number = |value: i32| f64::from(value);
     let (dx, dy) = (number(to.0 - from.0), number(to.1 - from.1));

@@ -5,10 +5,10 @@ use crate::world_error::WorldError;
 /// Minimum and maximum size of a pixel, in metres.
 const RESOLUTIONS: std::ops::RangeInclusive<f64> = 1e-4..=100.0;
 
-/// The content of the YAML file of a ROS map.
+/// Contents of the YAML file of a ROS map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Header {
-    /// The path of the image, from the folder of the file.
+    /// Path of the image, relative to the folder of the YAML file.
     pub image: String,
     /// Size of a pixel, in metres.
     pub(crate) resolution: f64,
@@ -24,7 +24,7 @@ pub struct Header {
     pub(crate) occupied: f64,
 }
 
-/// The value of a key, and its position in the file.
+/// Value of a key, and its position in the file.
 struct Value<'t> {
     line: usize,
     column: usize,
@@ -83,7 +83,7 @@ fn value<'t>(text: &'t str, key: &str) -> Option<Value<'t>> {
     Some(trimmed(number, line, key.len() + 1, line.get(key.len() + 1..)?))
 }
 
-/// Returns the values of a key with several values: `[1, 2]`, or a line `- 1` for each.
+/// Returns the values of a key that has several values: `[1, 2]`, or one line `- 1` for each.
 fn numbers<'t>(text: &'t str, key: &str) -> Vec<Value<'t>> {
     let Some((number, line)) = line(text, key) else { return Vec::new() };
     let Some(begins) = line.find('[') else {
@@ -105,8 +105,7 @@ fn numbers<'t>(text: &'t str, key: &str) -> Vec<Value<'t>> {
     values.collect()
 }
 
-/// Returns the line that begins with a key, and the number of the line, from 1; `None` if the text does not have the
-/// key.
+/// Returns the line that begins with `key`, and its number, counted from 1; `None` if the text does not have the key.
 fn line<'t>(text: &'t str, key: &str) -> Option<(usize, &'t str)> {
     (1..).zip(text.lines()).find(|(_, line)| line.strip_prefix(key).is_some_and(|rest| rest.starts_with(':')))
 }

@@ -3,7 +3,7 @@
 /// Maximum number of pixels: a floor of 500 m by 500 m at 5 cm.
 const PIXELS_MOST: usize = 100_000_000;
 
-/// Rows of grey, from the top; 0 is black.
+/// Rows of grey values, from the top; 0 is black.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Image {
     pub(super) width: usize,
@@ -49,13 +49,13 @@ impl Image {
             let darkness = if negate { bright } else { 1.0 - bright };
             darkness > than
         };
-        // There are far more pixels than greys.
+        // Each grey value is converted once, since there are far more pixels than grey values.
         let greys: Vec<bool> = (0..=u16::MAX).map(is_dark).collect();
         self.grey.iter().map(|grey| greys.get(usize::from(*grey)).copied().unwrap_or(false)).collect()
     }
 }
 
-/// The words of the file that are still to be read, without comments from `#` to the end of a line.
+/// Remaining words of the file, without comments from `#` to the end of a line.
 struct Words<'b>(&'b [u8]);
 
 impl<'b> Words<'b> {
@@ -80,7 +80,7 @@ impl<'b> Words<'b> {
         numbers.take(count).collect()
     }
 
-    /// Reads one byte per pixel, or two bytes with the more significant first, after one white space.
+    /// Reads one byte per pixel, or two bytes (big-endian), after one white space.
     fn bytes(&mut self, count: usize, white: u16) -> Vec<u16> {
         let bytes = self.0.get(1..).unwrap_or_default();
         if white < 256 {

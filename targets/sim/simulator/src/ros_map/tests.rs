@@ -1,4 +1,4 @@
-//! Tests of maps as mapping robots save them, and of broken maps.
+//! Tests maps as mapping robots save them, and invalid maps.
 
 use mdle_runtime::{Meters, Radians};
 
@@ -14,7 +14,7 @@ fn header(text: &str) -> Header {
     Header::parse("map.yaml", text).expect("a good header")
 }
 
-/// Returns a map of this size in pixels, black where `stands` is true, grey in the first column, else white.
+/// Returns a map of this size in pixels: black where `stands` is true, grey in the first column, otherwise white.
 fn map(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> Vec<u8> {
     let mut bytes = format!("P5\n# CREATOR: map_saver.cpp 0.050 m/pix\n{width} {height}\n255\n").into_bytes();
     let grey = |row, column| {
@@ -122,7 +122,7 @@ fn faults_have_their_place() {
 
 #[test]
 fn a_long_comb_has_its_corners_and_no_more() {
-    // One contour of three million sides: every tooth is one pixel wide, and so is what is between two.
+    // One contour with three million sides: every tooth and every gap is one pixel wide.
     let (width, height) = (3000, 1000);
     let comb = |column: usize, row: usize| {
         row == 0

@@ -1,13 +1,13 @@
-//! The echo of one ping: determines which rays of a sonar's cone return loud enough, and which of these returns
-//! first.
+//! The echo of one ping: determines which rays of a sonar's cone return loud enough to be heard, and which of them
+//! returns first.
 //!
-//! A ray at angle α off the axis that meets a surface at angle β off its normal is heard when (α / lobe)² + (β
-//! / facing)² is at most 1 minus the loss over the distance. Near an edge, a small part of the sound is
-//! scattered in all directions: there, β counts as a fixed loss. A rough surface scatters too: the loss due to
-//! β is reduced by the fraction `rough`. A right-angled corner reflects all sound back to its source.
+//! A ray at angle α off the axis that hits a surface at angle β off its normal is heard if (α / lobe)² + (β / facing)²
+//! is at most 1 minus the loss over the distance. Near an edge, a small part of the sound is scattered in all
+//! directions: there, a fixed loss replaces the term of β. A rough surface scatters too: the loss due to β is reduced
+//! by the fraction `rough`. A right-angled corner reflects all sound back to its source.
 //!
-//! The rays of a cone lie so far apart that a person 4 m away may be between two rays. One additional ray is
-//! therefore aimed at each moving object and each other robot, of which there are few.
+//! The rays of a cone are so far apart that a person 4 m away may be between two rays. Therefore one additional ray is
+//! aimed at each moving object and each other robot, of which there are few.
 
 use mdle_runtime::Radians;
 
@@ -19,29 +19,29 @@ use crate::walls::{Reached, Walls};
 
 /// Number of rays of a cone, which are evenly spread.
 const RAYS: u8 = 7;
-/// Maximum distance from an edge, in metres, at which the edge scatters a ray.
+/// Maximum distance from an edge at which the edge scatters a ray, in metres.
 const SCATTERS: f64 = 0.08;
-/// Loss at an edge. An edge is heard up to 0.6 of the lobe, that is 12.5° of 21°.
+/// Loss at an edge, which is then heard up to 0.6 of the lobe, that is 12.5° of 21°.
 const EDGE_COSTS: f64 = 0.65;
-/// Distance, in metres, up to which the receiver's growing gain compensates the loss.
+/// Distance up to which the receiver's growing gain compensates the loss, in metres.
 const GAIN_LASTS: f64 = 2.0;
-/// Loss for each metre beyond [`GAIN_LASTS`]: at 6.5 m, a wall is heard up to 26° off its normal.
+/// Loss per metre beyond [`GAIN_LASTS`]: at 6.5 m, a wall is heard up to 26° off its normal.
 const METRE_COSTS: f64 = 0.13;
 /// Maximum distance between the two reflections of a ray in a corner, per metre of range, at which the sound still
-/// returns to the sonar, as it does for the neighbouring ray into the corner itself.
+/// returns to the sonar. The neighbouring ray into the corner itself returns in the same way.
 const CORNER: f64 = 0.35;
 /// Maximum cosine of the angle between a ray into a corner and the ray that leaves it: the ray leaves within 15° of the
 /// opposite direction.
 const BACK: f64 = -0.966;
-/// Distance from a surface, in metres, at which a reflected ray begins, so that it does not meet the surface again.
+/// Distance from a surface at which a reflected ray begins, in metres, so that it does not hit the surface again.
 const OFF: f64 = 1e-6;
 
 /// Returns the distance, in metres, from a transducer to the nearest object that it hears in its cone; `None` if it
-/// hears nothing. `fade` is the amount by which the transducer hears better or worse than usual.
+/// hears no object. `fade` is the gain or loss of loudness of this ping.
 pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
     let spread = (0..RAYS).map(|ray| hearing.half_cone.0 * (2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0));
     let others = walls.others_in(from, axis, hearing.half_cone);
-    // A ray that leaves a corner goes on for a part of its range.
+    // A ray that leaves a corner continues for a fraction of its range.
     let standing = walls.stand_in_reach(from, (1.0 + CORNER) * hearing.most);
     let (reached, bounced) = (Reached { others: &others, standing }, Reached { standing, ..walls.all() });
     let aimed = walls.things().chain(others.iter().map(Footprint::at)).map(|thing| {
@@ -57,19 +57,19 @@ pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing,
             walls.cast_among(reached, from, way, most)
         } else {
             let lost = hearing.lobe.map_or(0.0, |lobe| (off_axis / lobe.0) * (off_axis / lobe.0));
-            // A ray that has lost all loudness at the start is not heard at any distance.
+            // A ray without any remaining loudness at the start is not heard at any distance.
             let is_loud = 1.0 - (lost - fade) >= 0.0;
             let found = is_loud.then(|| walls.found_among(reached, from, way, most)).flatten();
             found.and_then(|surface| heard((walls, bounced), from, way, &surface, hearing, lost - fade))
         };
-        // A corner's echo comes from behind the place where the ray first met a wall.
+        // The echo of a corner comes from further away than the point where the ray first hit a wall.
         best = heard.filter(|range| *range < most).or(best);
     }
     best
 }
 
-/// Returns the range at which a ray hears this surface; `None` if it does not hear it. `lost` is the loss of the ray
-/// before it meets the surface.
+/// Returns the range at which a ray hears this surface; `None` if the ray does not hear it. `lost` is the loss of the
+/// ray before it hits the surface.
 fn heard(
     walls: (&Walls, Reached<'_>),
     from: Place,
@@ -93,7 +93,7 @@ fn heard(
 }
 
 /// Returns the range of the corner to which this surface belongs; `None` if no corner reflects the ray back. `bounced`
-/// contains the obstacles that the ray may meet after it has left the surface.
+/// contains the obstacles that the ray may hit after it has left the surface.
 fn corner((walls, bounced): (&Walls, Reached<'_>), from: Place, way: Place, first: &Surface) -> Option<f64> {
     let on = reflected(way, first.normal);
     let bounce = Place {

@@ -1,4 +1,4 @@
-//! Tests of the echoes that ideal sonars and the sonars of a Scout hear.
+//! Tests the echoes that ideal sonars and a Scout's sonars hear.
 
 use mdle_runtime::SonarId;
 
@@ -25,13 +25,13 @@ fn range(ring: &Ring, sonar: u8) -> Option<f64> {
     ring.pings[SonarId::new(sonar).number()].nearest(1).map(|range| range.0)
 }
 
-/// Returns the range of an ideal sonar that faces ahead; `None` without an echo.
+/// Returns the range of an ideal sonar that points ahead; `None` without an echo.
 fn ahead(text: &str) -> Option<f64> {
     range(&pinged(Body::Ideal, &[], text), 0)
 }
 
-/// Returns the text of a wall at this distance along the first axis, turned by this many degrees around that
-/// point.
+/// Returns the text of a wall at this distance along the first axis, turned by this many degrees around its point on
+/// the axis.
 fn turned(distance: f64, degrees: f64) -> String {
     let (sin, cos) = libm::sincos(degrees.to_radians());
     let (x, y) = (9.0 * sin, 9.0 * cos);
@@ -53,7 +53,7 @@ fn sonars_count_counter_clockwise_from_the_front() {
 
 #[test]
 fn a_cone_sees_what_its_axis_does_not() {
-    // A post 2 m away, seen at 11 and at 14 degrees off the axis of the cone.
+    // A post 2 m away, at 11° and at 14° off the axis of the cone.
     let post = |degrees: f64| {
         let at = Pose::ORIGIN.towards(Radians(0.0), Meters(0.19)).towards(Radians::from_degrees(degrees), Meters(2.0));
         ahead(&format!("[[box]]\ncentre = [{}, {}]\nsize = [0.1, 0.1]", at.x.0, at.y.0))
@@ -88,7 +88,7 @@ fn a_seed_makes_the_noise_that_it_says_it_does() {
     assert!((150..250).contains(&missed), "{missed}");
 }
 
-/// Returns the greatest angle off its normal, in degrees, at which a wall `distance` metres ahead is heard.
+/// Returns the maximum angle off its normal, in degrees, at which a wall `distance` metres ahead is heard.
 fn last_heard(distance: f64, without: &[Part]) -> u32 {
     (0..80)
         .take_while(|degrees| range(&pinged(Body::Scout, without, &turned(distance, f64::from(*degrees))), 0).is_some())
@@ -101,11 +101,11 @@ fn a_flat_wall_answers_up_to_forty_degrees_or_so() {
     assert!((39..=42).contains(&last_heard(1.0, &[])), "{}", last_heard(1.0, &[]));
     assert!((24..=30).contains(&last_heard(6.0, &[])), "{}", last_heard(6.0, &[]));
     assert!(last_heard(1.0, &[Part::Specular]) > 70);
-    // The cone's outermost ray and the limit on its normal.
+    // Both the outermost ray of the cone and the limit on the normal's angle count.
     assert!((45..=49).contains(&last_heard(1.0, &[Part::Lobe])), "{}", last_heard(1.0, &[Part::Lobe]));
 }
 
-/// Returns the largest angle to its normal, in degrees, at which a wall of this roughness 1 m ahead is heard.
+/// Returns the maximum angle off its normal, in degrees, at which a wall with this roughness 1 m ahead is heard.
 fn last_heard_rough(rough: f64) -> u32 {
     let heard = |degrees: &u32| {
         let wall = turned(1.0, f64::from(*degrees));
@@ -147,7 +147,7 @@ fn every_kind_of_obstacle_may_have_its_own_roughness() {
 
 #[test]
 fn a_wall_end_is_heard_only_near_the_axis() {
-    // The end of a wall that lies along the ray's direction, so that its face is not heard.
+    // The end of a wall that lies along the ray, so that its face is not heard.
     let end = |degrees: f64| {
         let (sin, cos) = libm::sincos(degrees.to_radians());
         let (x, y) = (0.19 + cos, sin);
@@ -166,7 +166,7 @@ fn a_wall_end_is_heard_only_near_the_axis() {
 
 #[test]
 fn a_corner_is_heard_where_its_walls_are_not() {
-    // A right angle whose walls both lie 45 degrees off the axis.
+    // A right-angled corner whose walls both lie 45° off the axis.
     let corner = "[[wall]]\npoints = [[0, -2], [2, 0], [0, 2]]";
     let heard = range(&pinged(Body::Scout, &[], corner), 0).expect("a corner ahead");
     assert!((heard - 1.81).abs() < 0.06, "{heard}");

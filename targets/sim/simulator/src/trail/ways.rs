@@ -1,5 +1,5 @@
-//! The path driven by a robot, divided into the parts that each atom drove. The number of places is limited, and each
-//! pass of an atom has a part of its own.
+//! The path driven by a robot, divided by atoms. The number of stored positions is limited, and each pass of an atom
+//! has its own part of the path.
 
 use std::collections::BTreeMap;
 
@@ -7,32 +7,33 @@ use mdle_runtime::Nanos;
 
 use crate::place::Place;
 
-/// Distance, in metres, from the last kept place below which a place is not kept, because it is less than a pixel away.
+/// Minimum distance between two stored positions, in metres; a smaller distance is less than a pixel.
 const APART: f64 = 0.01;
-/// Maximum number of places of the path driven that are kept; above this number, every second place is removed.
+/// Maximum number of stored positions of the path; above it, every second position is removed.
 const PLACES_MOST: usize = 100_000;
-/// Maximum number of passes whose paths are kept separately, and of atoms that are counted.
+/// Maximum number of passes whose paths are stored separately, and of atoms that are counted.
 const MARKS_MOST: usize = 10_000;
 
 /// The path driven, and the atoms that drove it.
 #[derive(Debug, Clone)]
 pub(crate) struct Ways {
-    /// The path driven before the first atom began.
+    /// Path driven before the first atom began.
     pub(crate) before: Vec<Place>,
-    /// Each pass of an atom, in order.
+    /// Passes of atoms, in order.
     pub(crate) marks: Vec<Mark>,
-    /// The atoms of the plan's text, in the order in which they first began.
+    /// Atoms of the plan's text, in the order in which they first began.
     pub(crate) atoms: Vec<Atom>,
-    /// Number of beginnings of atoms that are not among `atoms`.
+    /// Number of times that an atom outside `atoms` began.
     pub(crate) uncounted: usize,
-    /// Positions of atoms in `atoms` by number and law, because plans that replace each other may use the same numbers.
+    /// Index in `atoms` by number and law. Numbers alone are ambiguous, because plans that replace each other may use
+    /// the same numbers.
     by_number: BTreeMap<(u64, String), usize>,
-    /// The running atom, and the time from which its total time has not been counted yet; `None` while no atom in
+    /// Index of the running atom, and the time up to which its total time has been counted; `None` while no atom in
     /// `atoms` runs.
     running: Option<(usize, Nanos)>,
-    /// Number of recorded places.
+    /// Number of stored positions.
     count: usize,
-    /// Minimum distance between two places that are kept, in metres.
+    /// Current minimum distance between two stored positions, in metres.
     apart: f64,
 }
 
@@ -42,7 +43,7 @@ pub(crate) struct Atom {
     /// Number of the atom's state in the first pass of the enclosing loops.
     pub(crate) number: u64,
     pub(crate) law: String,
-    /// Place where the atom first began.
+    /// Position where the atom first began.
     pub(crate) place: Place,
     /// Number of times that the atom began.
     pub(crate) times: u64,
@@ -53,15 +54,15 @@ pub(crate) struct Atom {
 /// A pass of an atom, with the path driven in it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mark {
-    /// Position of the atom in [`Ways::atoms`]; `None` for the remainder of a run with too many passes.
+    /// Index of the atom in [`Ways::atoms`]; `None` for the mark that combines all passes beyond the maximum number.
     pub(crate) atom: Option<usize>,
     pub(crate) t: Nanos,
-    /// The path driven, from the place where the pass began.
+    /// Path driven, from the position where the pass began.
     pub(crate) way: Vec<Place>,
 }
 
 impl Ways {
-    /// Returns a path that begins here.
+    /// Returns a path that begins at `place`.
     pub(super) fn from(place: Place) -> Self {
         Self {
             before: vec![place],
@@ -75,7 +76,7 @@ impl Ways {
         }
     }
 
-    /// Records that the robot is at this place.
+    /// Records that the robot is at `place`.
     pub(super) fn went(&mut self, place: Place) {
         let apart = self.apart;
         let way = self.last();
@@ -88,19 +89,19 @@ impl Ways {
         }
     }
 
-    /// Adds the path that a robot of a fleet drove, until this time.
+    /// Adds the path that a robot of a fleet has driven, up to the time `until`.
     pub(crate) fn drove(&mut self, number: u64, name: &str, way: &[Place], until: Nanos) {
         let Some(place) = way.first().copied() else { return };
         self.marks.push(Mark { atom: Some(self.atoms.len()), t: Nanos::ZERO, way: way.to_vec() });
         self.atoms.push(Atom { number, law: name.to_owned(), place, times: 1, total: until });
     }
 
-    /// Returns the path driven in the current pass of an atom.
+    /// Returns the path of the current pass.
     fn last(&mut self) -> &mut Vec<Place> {
         self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way)
     }
 
-    /// Removes every second place, except places where an atom began or ended.
+    /// Removes every second position, except positions where an atom began or ended.
     fn thin(&mut self) {
         self.apart *= 2.0;
         self.count = 0;
@@ -115,7 +116,7 @@ impl Ways {
         }
     }
 
-    /// Records that an atom begins at this place.
+    /// Records that an atom begins at `place`.
     pub(super) fn began(&mut self, number: u64, law: &str, t: Nanos, place: Place) {
         self.passed(t);
         let atom = self.atom(number, law, place);
@@ -124,7 +125,7 @@ impl Ways {
             Some(atom) => atom.times = atom.times.saturating_add(1),
             None => self.uncounted = self.uncounted.saturating_add(1),
         }
-        // The last of the marks is the way of all passes that have none of their own.
+        // The last mark contains the path of all passes beyond the maximum number.
         if self.marks.len() > MARKS_MOST {
             return;
         }
@@ -138,8 +139,7 @@ impl Ways {
         self.marks.push(Mark { atom, t, way: vec![place] });
     }
 
-    /// Returns the position of an atom in `atoms`, and appends the atom if it is new; `None` if there is no room for
-    /// it.
+    /// Returns the index of an atom in `atoms`, and appends the atom if it is new; `None` if the list is full.
     fn atom(&mut self, number: u64, law: &str, place: Place) -> Option<usize> {
         let next = self.atoms.len();
         let key = (number, law.to_owned());
@@ -153,7 +153,7 @@ impl Ways {
         })
     }
 
-    /// Records that time has passed until `t`.
+    /// Adds the time up to `t` to the total of the running atom.
     pub(crate) fn passed(&mut self, t: Nanos) {
         if let Some((atom, since)) = &mut self.running
             && let Some(atom) = self.atoms.get_mut(*atom)
@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(ways.atoms.iter().map(|atom| atom.times).sum::<u64>(), 20_000);
         assert_eq!(ways.before.first(), Some(&Place { x: 0.0, y: 0.0 }));
         assert!(ways.places().last().is_some_and(|last| 19_999.98 - last.x < ways.apart), "{:?}", ways.places().last());
-        // Passes without a path of their own do not belong to an atom.
+        // The mark that combines the last passes does not belong to an atom.
         assert!(ways.marks.last().is_some_and(|mark| mark.atom.is_none()));
     }
 }

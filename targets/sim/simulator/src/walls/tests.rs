@@ -1,4 +1,4 @@
-//! Tests of walls: rays and distances compared with brute force, and moving objects.
+//! Compares rays and distances with brute force, and tests moving objects.
 
 #[cfg(parry)]
 mod parry;
@@ -29,14 +29,14 @@ fn scene(random: &mut ChaCha8Rng, walls: usize) -> World {
     World::parse("scene", &text).expect("a good scene")
 }
 
-/// Returns a body without extent.
+/// Returns a body of size zero.
 fn point(at: Place) -> Footprint {
     let pose = Pose { x: Meters(at.x), y: Meters(at.y), ..Pose::ORIGIN };
     Footprint { pose, form: Form::Disc { radius: 0.0 } }
 }
 
-/// Returns a random place in or near a scene, and a random direction; every third direction is along an axis,
-/// as most walls are.
+/// Returns a random position in or near a scene, and a random direction. Every third direction is along an axis, like
+/// most walls.
 fn look(random: &mut ChaCha8Rng) -> (Place, Radians) {
     let mut number = || uniform(random);
     let from = Place { x: 14.0 * number() - 2.0, y: 14.0 * number() - 2.0 };
@@ -81,7 +81,7 @@ fn a_ray_meets_nothing_where_no_wall_is_in_reach() {
 
 #[test]
 fn a_ray_that_lies_in_borders_of_cells_meets_what_is_there() {
-    // Walls on a raster, so that borders of cells fall on them, and rays from place to place of the raster.
+    // Walls on a raster that coincides with borders of cells, and rays between points of the raster.
     let mut text = String::new();
     for x in 0..20 {
         text += &format!("[[box]]\nmin = [{x}, {}]\nmax = [{}.5, {}.5]\n", x % 5, x, x % 5);
@@ -116,25 +116,26 @@ fn the_nearest_wall_is_named() {
 
 #[test]
 fn edges_are_where_a_surface_ends_or_turns_away() {
-    // A box, and a wall that ends at its left side and goes on round a corner.
+    // A box, and a wall that ends at the box's left side and turns at a corner.
     let text = "[[box]]\nmin = [2, -1]\nmax = [4, 1]\n[[wall]]\npoints = [[2, 0], [0, 0], [0, 3], [0, 6]]";
     let walls = Walls::of(&World::parse("edges", text).expect("good"));
     let edge = |x, y, degrees: f64| {
         let (sin, cos) = libm::sincos(degrees.to_radians());
         walls.found_among(walls.all(), Place { x, y }, Place { x: cos, y: sin }, 9.0).expect("a wall").edge
     };
-    // Up at the box from below: its corners turn away.
+    // A ray from below to the box: its corners are edges, since their sides turn away.
     assert!((edge(2.25, -3.0, 90.0) - 0.25).abs() < 1e-9);
-    // At its left side, near the wall that ends there: that is a corner and no edge, and the box's own is 0.9 m away.
+    // A ray to the box's left side, near the end of the wall: they form a corner, not an edge, and the box's own edge
+    // is 0.9 m away.
     assert!((edge(1.0, 0.1, 0.0) - 0.9).abs() < 1e-9);
-    // Into the corner of the wall from inside and from outside.
+    // Rays to the wall's corner, from inside and from outside.
     assert!((edge(1.0, 0.5, 180.0)).is_infinite() || edge(1.0, 0.5, 180.0) > 5.0);
     assert!((edge(-1.0, 0.5, 0.0) - 0.5).abs() < 1e-9);
-    // Where the wall goes straight on there is none.
+    // A straight continuation of the wall is not an edge.
     assert!((edge(1.0, 3.1, 180.0) - 2.9).abs() < 1e-9);
 }
 
-/// Returns a world of parallel walls, 200 km long and a millimetre apart.
+/// Returns a world with parallel walls, 200 km long and a millimetre apart.
 fn bundle(count: usize) -> World {
     let outline = |number: usize| {
         let x = 5.0 + number as f64 / 1000.0;

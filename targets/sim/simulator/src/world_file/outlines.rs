@@ -1,4 +1,4 @@
-//! Checks the content of a world file and converts it to metres.
+//! Checks the contents of a world file and converts them to metres.
 
 use mdle_runtime::{Meters, Pose, Radians};
 use toml::Spanned;
@@ -11,7 +11,7 @@ use crate::moving::{Schedule, Stop, Thing};
 use crate::outline::Outline;
 use crate::place::Place;
 
-/// Maximum coordinate, in metres; beyond it, millimetres would be lost to rounding.
+/// Maximum coordinate, in metres; beyond it, rounding would lose millimetres.
 const FURTHEST: f64 = 1e6;
 /// Number of corners of the polygon that approximates a disc; at a radius of 1 m the error is 2 mm.
 const CORNERS: u32 = 48;
@@ -20,7 +20,7 @@ const REACH: f64 = 0.1;
 /// Units of length, in metres.
 const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254), ("ft", 0.3048)];
 
-/// Unit of the lengths of a file, in metres.
+/// Unit of length of a file, in metres.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Unit(f64);
 
@@ -221,7 +221,7 @@ impl Unit {
     }
 }
 
-/// Returns the roughness that is written for the whole file or for one obstacle; `whole` if none is written.
+/// Returns the roughness given for the whole file or for one obstacle; `whole` if no roughness is given.
 pub(super) fn rough(written: Option<&Spanned<f64>>, whole: f64) -> Result<f64, Wrong> {
     let Some(written) = written else { return Ok(whole) };
     let value = *written.get_ref();

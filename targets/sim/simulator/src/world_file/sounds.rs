@@ -1,4 +1,4 @@
-//! Checks the sources of sound of a world file, and the reverberation of its room.
+//! Checks the sound sources of a world file, and the reverberation of its room.
 
 use mdle_sound::{SoundKind, SoundRoom, SoundSource};
 use toml::Spanned;
@@ -12,13 +12,13 @@ use crate::place::Place;
 const LEVEL: f64 = 10.0;
 /// Minimum and maximum level, in dB.
 const LEVELS: (f64, f64) = (-40.0, 80.0);
-/// Maximum number of sources, since each costs a convolution in each turn.
+/// Maximum number of sources, since each source costs a convolution in each turn.
 const MOST: usize = 8;
 /// Kinds of sound.
 const KINDS: [(&str, SoundKind); 2] = [("white", SoundKind::White), ("speech", SoundKind::Speech)];
 
 impl Unit {
-    /// Reads the sources of sound.
+    /// Reads the sound sources.
     pub(super) fn sounds(self, written: &[Spanned<Table<SoundText>>]) -> Result<Vec<SoundSource>, Wrong> {
         if let Some(text) = written.get(MOST) {
             return Err(Wrong::at(text, format!("more than {MOST} sources of sound")));

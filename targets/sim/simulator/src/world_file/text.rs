@@ -1,4 +1,4 @@
-//! The content of a world file as written, before it is checked.
+//! The contents of a world file as written, before they are checked.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -8,10 +8,10 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
-/// A list of numbers: a place, a size, or a time with a place.
+/// A list of numbers: a position, a size, or a time with a position.
 pub(super) type Numbers = Spanned<Vec<Spanned<f64>>>;
 
-/// Content of a world file.
+/// Contents of a world file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WorldText {
@@ -111,7 +111,7 @@ pub(super) struct DoorText {
     pub(super) every: Option<Spanned<f64>>,
 }
 
-/// A value that must be a table: serde would also accept an array, and ignore its last values.
+/// A value that must be a table: serde would also accept an array, and ignore its surplus values.
 #[derive(Default)]
 pub(super) struct Table<T>(pub(super) T);
 

@@ -1,5 +1,5 @@
-//! Compares rays and distances with those of the library parry2d. `.ci/thorough 4` runs this test: the library takes
-//! long to compile.
+//! Compares rays and distances with the library parry2d. Only `.ci/thorough 4` runs this test, because the library
+//! takes long to compile.
 
 use parry2d_f64::math::Vector;
 use parry2d_f64::query::{PointQuery, Ray, RayCast};
@@ -7,7 +7,7 @@ use parry2d_f64::shape::Polyline;
 
 use super::*;
 
-/// Builds the walls of `world` as a polyline of parry2d.
+/// Returns the walls of `world` as a polyline of parry2d.
 fn beside(world: &World) -> Polyline {
     let (mut vertices, mut indices) = (Vec::new(), Vec::new());
     for ((_, from, to), first) in world.segments().zip((0_u32..).step_by(2)) {
