@@ -1,4 +1,4 @@
-//! Tests of the target's options: their meaning, and the refusal of wrong options before anything moves.
+//! Tests the effects of the target's options, and that wrong options are rejected before anything moves.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -15,7 +15,7 @@ fn matches(options: &[&str]) -> ArgMatches {
         .expect("known options")
 }
 
-/// Returns the error message with which these options are refused.
+/// Returns the error message with which these options are rejected.
 fn refused(options: &[&str]) -> String {
     match Sim::connect(&matches(options), Sim::PERIOD, &StopRequest::default()) {
         Ok(_) => panic!("{options:?} were accepted"),

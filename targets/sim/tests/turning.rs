@@ -1,4 +1,4 @@
-//! Tests of `rotate` and `turn` on the simulated bodies, at the limits of their wheels and with turns of several
+//! Tests `rotate` and `turn` on the simulated bodies, at the limits of their wheels and with turns of several
 //! durations: the laws end at their heading, and the body does not overshoot.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
@@ -9,17 +9,17 @@ use mdle_runtime::{Begin, Completes, Control, Frame, Law, Nanos, Output, Pose, R
 use mdle_sim::alphabet::{Rotate, Turn};
 use mdle_sim::{Body, Make, Sensed, Simulated, World};
 
-/// The result of a turn on the spot: angles in degrees by odometry, and the duration in seconds.
+/// Result of a turn on the spot: angles in degrees by odometry, and the duration in seconds.
 #[derive(Debug)]
 struct Turned {
     /// Total turn, counter-clockwise positive.
     by: f64,
-    /// Maximum angle from the heading at the start, on the side of the turn.
+    /// Maximum angle from the start heading, in the direction of the turn.
     furthest: f64,
     seconds: f64,
 }
 
-/// Runs a law that turns, on a body on an empty floor, in turns of `period` milliseconds.
+/// Runs a turning law on a body on an empty floor, in turns of `period` milliseconds.
 fn turned<C>(quark: &C, way: f64, make: &Make, period: u64) -> Turned
 where
     C: Control<Sensed, Law: Completes<Sensed> + Law<Sensed, Input = Twist>>,
@@ -65,7 +65,7 @@ fn turn_ends_at_its_angle_and_goes_no_further() {
                 let what = format!("{make:?}, {angle} degrees in turns of {period} ms");
                 let turned = turned(&quark, angle, &make, period);
                 ends_well(&turned, angle, &what);
-                // At 0.8 rad/s, and what it takes to come to rest.
+                // The time at 0.8 rad/s, plus the time to come to rest.
                 assert!(turned.seconds < angle.abs() / 45.0 + 4.0, "{what}: {turned:?}");
             }
         }

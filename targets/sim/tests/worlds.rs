@@ -1,5 +1,5 @@
-//! Tests of world files: the office has its walls (docs/src/reference/office.md, 1), and every fault is reported with
-//! its place.
+//! Tests world files: the office has its walls (docs/src/reference/office.md, 1), and every error is reported with its
+//! position.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::time::Duration;
@@ -8,7 +8,7 @@ use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Robot, SonarId, Twist};
 use mdle_sim::{Body, Make, Simulated, World, Zone};
 
-/// Returns the error message of a faulty world.
+/// Returns the error message for a world with an error.
 fn fault(text: &str) -> String {
     World::parse("room.toml", text).expect_err("a bad world").to_string()
 }
@@ -207,7 +207,7 @@ fn every_world_that_comes_along_has_a_place_to_start() {
     assert!(World::named("ofice").is_none());
 }
 
-/// Returns the ranges ahead of a robot that stands still at the origin, one per second; `None` without an echo.
+/// Returns the ranges ahead of a robot at rest at the origin, one per second; `None` without an echo.
 fn ahead(text: &str, seconds: usize) -> Vec<Option<f64>> {
     let world = World::parse("a test's world", text).expect("a good world");
     let mut robot = Simulated::new(&world, world.start, None, Duration::from_secs(1)).expect("a start on the floor");
@@ -236,7 +236,7 @@ fn what_moves_is_where_its_schedule_says() {
 
 #[test]
 fn nothing_moves_into_the_robot_and_it_feels_what_comes() {
-    // It walks through the robot and on, and a door closes on it.
+    // Objects whose schedules pass through the robot.
     for things in [
         "[[disc]]\nradius = 0.3\nschedule = [[0, 3, 0], [10, -3, 0]]",
         "[[box]]\nsize = [0.5, 0.5]\nschedule = [[0, 0, 3], [1, 0, -3]]",

@@ -1,18 +1,18 @@
-//! Worlds in which a body can just pass: doorways, boxes in a hallway, corners, and random rooms; and the worlds of the
-//! simulator.
+//! Worlds through which a body can barely pass: doorways, boxes in a hallway, corners, and random rooms; also the
+//! simulator's own worlds.
 
 use mdle_sim::{Body, Place, World};
 
 use crate::chance::Chance;
 
-/// A world to cross, and the place to drive to.
+/// A world to cross, and the destination.
 pub(crate) struct Crossing {
     pub(crate) world: World,
     pub(crate) to: Place,
 }
 
-/// Returns the width, in metres, on which the widths of passages are based: the diameter of a Scout, or the shorter
-/// side of an ATRV-mini.
+/// Returns the width on which the widths of passages are based, in metres: the diameter of a Scout, or the shorter side
+/// of an ATRV-mini.
 pub(crate) fn width(body: Body) -> f64 {
     match body {
         Body::Ideal | Body::Scout => 0.41,
@@ -51,7 +51,7 @@ pub(crate) fn middle(body: Body, seed: u64) -> Crossing {
     ahead(seed, 6.0, &[hallway(wide), block].concat())
 }
 
-/// Returns a U-shaped wall across the way, open towards the start and up to 1.5 m deep.
+/// Returns a U-shaped wall across the path, open towards the start and up to 1.5 m deep.
 pub(crate) fn corner(body: Body, seed: u64) -> Crossing {
     let mut chance = Chance::new(seed ^ 0xc0);
     let (depth, half) = (0.5 + chance.unit(), width(body) / 2.0 + 0.5 + 0.4 * chance.unit());
@@ -61,7 +61,7 @@ pub(crate) fn corner(body: Body, seed: u64) -> Crossing {
     ahead(seed, 7.0, &[around, &pocket].concat())
 }
 
-/// Returns the world `room`, and a point 7 m from the start along its heading.
+/// Returns the world `room`, with a destination 7 m from the start along the start heading.
 pub(crate) fn room(_: Body, seed: u64) -> Crossing {
     let mut world = World::named("room").expect("a world").expect("a good world");
     let mut chance = Chance::new(seed);
@@ -71,7 +71,7 @@ pub(crate) fn room(_: Body, seed: u64) -> Crossing {
     Crossing { world, to }
 }
 
-/// Returns the world `hall`, with a way past the walker from the start to the other end.
+/// Returns the world `hall`, with a path past the walker from the start to the other end.
 pub(crate) fn hall(_: Body, seed: u64) -> Crossing {
     let mut world = World::named("hall").expect("a world").expect("a good world");
     let mut chance = Chance::new(seed);
@@ -86,7 +86,7 @@ pub(crate) fn random(body: Body, seed: u64) -> Crossing {
     Crossing { world, to: Place { x: 7.0, y: 7.0 } }
 }
 
-/// Returns the world `maze`, with a way through its first passages, from the start to the first corner.
+/// Returns the world `maze`, with a path through its first passages, from the start to the first corner.
 pub(crate) fn maze(_: Body, seed: u64) -> Crossing {
     let mut world = World::named("maze").expect("a world").expect("a good world");
     let mut chance = Chance::new(seed);

@@ -1,4 +1,4 @@
-//! Tests of `goAvoid` in random rooms, out of corners and through a narrow doorway, with and without the errors of real
+//! Tests `goAvoid` in random rooms, out of corners and through a narrow doorway, with and without the errors of real
 //! robots.
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking, and tells what happened")]
 
@@ -19,7 +19,7 @@ fn scout(seed: u64) -> Make {
     Make { body: Body::Scout, seed: Some(seed), ..Make::default() }
 }
 
-/// Returns the number of these runs that arrive without contact; prints the outcome of the others.
+/// Returns the number of runs that arrive without contact; prints the outcome of the others.
 fn clean(name: &str, runs: impl Iterator<Item = (u64, Outcome)>) -> usize {
     let clean = runs.filter(|(seed, outcome)| {
         if *outcome != Outcome::Clean {
@@ -42,8 +42,8 @@ fn rooms_are_crossed_by_a_scout_too() {
     assert!(clean("scout", runs) >= 22);
 }
 
-/// Returns the number of runs that reach a place 6 m ahead without contact, of four starts spread across 10 cm: with
-/// the ideal robot, and with a Scout.
+/// Returns how many of four runs reach a place 6 m ahead without contact, with starts spread across 10 cm: for the
+/// ideal robot, and for a Scout.
 fn past(walls: &str) -> (usize, usize) {
     let runs = |make: fn(u64) -> Make| {
         let run = move |seed: u64| {
@@ -75,9 +75,9 @@ fn a_doorway_twenty_centimetres_wider_than_the_body_is_passed() {
     assert!(scout >= 3);
 }
 
-/// Returns the number of runs, of those with these seeds, that go 6 m along a hallway 2 m wide without contact, while a
-/// person comes towards the robot at `speed`, in m/s. The person keeps `right` metres to the right of the middle, as
-/// the person sees it.
+/// Returns how many of the runs with these seeds go 6 m along a hallway 2 m wide without contact, while a person
+/// approaches the robot at `speed`, in m/s. The person keeps `right` metres to the right of the middle, from the
+/// person's view.
 fn meet(name: &str, make: fn(u64) -> Make, seeds: u64, speed: f64, right: f64) -> usize {
     let run = |seed: u64| {
         let y = 0.1 * (seed as f64 / 9.5 - 1.0);

@@ -1,4 +1,4 @@
-//! Creates random rooms of convex obstacles, with gaps wide enough for the robot, and runs `goAvoid` in them.
+//! Creates random rooms with convex obstacles, with gaps wide enough for the robot, and runs `goAvoid` in them.
 
 use std::fmt::Write;
 use std::time::Duration;
@@ -17,7 +17,7 @@ const SIDE: f64 = 8.0;
 /// Number of turns after which a run counts as failed: five minutes.
 const TURNS: u64 = 3000;
 
-/// The outcome of a run.
+/// Outcome of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Outcome {
     /// The run arrived without contact.
@@ -28,8 +28,8 @@ pub(crate) enum Outcome {
     TimedOut,
 }
 
-/// Returns a room with a dozen boxes and discs between the start, lower left, and the upper right corner, at
-/// least `gap` metres apart from each other and from the walls.
+/// Returns a room with a dozen boxes and discs between the start (lower left) and the upper right corner, at least
+/// `gap` metres apart from each other and from the walls.
 pub(crate) fn room(seed: u64, gap: f64) -> World {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut uniform =
@@ -37,7 +37,7 @@ pub(crate) fn room(seed: u64, gap: f64) -> World {
     let mut text = format!("start = {{ x = 1, y = 1, heading = {} }}\n", uniform(-180.0, 180.0));
     writeln!(text, "[[wall]]\npoints = [[0, 0], [{SIDE}, 0], [{SIDE}, {SIDE}], [0, {SIDE}], [0, 0]]")
         .expect("a string");
-    // As rectangles: a disc is one too when it comes to gaps.
+    // Occupied rectangles; for the gaps, a disc counts as its bounding square.
     let mut taken: Vec<[f64; 4]> = vec![[0.9, 0.9, 1.1, 1.1], [6.9, 6.9, 7.1, 7.1]];
     for _ in 0..2000 {
         if taken.len() == 14 {

@@ -27,8 +27,8 @@ fn a_flat_wall_is_heard_up_to_forty_degrees_and_a_column_less() {
     assert!(share(WALL, 1.0, 30.0) > 0.95 && share(WALL, 1.0, 55.0) < 0.05);
 }
 
-/// The error of a range is at most 3 cm in a closed room, plus one part in a hundred. Ranges are in whole inches,
-/// rounded down. One ping in a hundred has no echo, and one in two hundred a random range.
+/// The error of a range is at most 3 cm in a closed room, plus 1 %. Ranges are in whole inches, rounded down. One ping
+/// in a hundred has no echo, and one in two hundred has a random range.
 #[test]
 fn ranges_err_as_much_as_was_measured() {
     for distance in [0.5, 1.0, 4.0] {
@@ -39,7 +39,7 @@ fn ranges_err_as_much_as_was_measured() {
         let mean = close.iter().sum::<f64>() / close.len() as f64;
         assert!((0.001..0.011).contains(&strays), "{distance} m: {strays}");
         assert!((0.004..0.018).contains(&(silent as f64 / MANY as f64)), "{distance} m: {silent} of {MANY}");
-        // Half an inch is lost by rounding down.
+        // Rounding down shortens ranges by half an inch on average.
         assert!((mean + 0.0127).abs() < 0.01, "{distance} m: {mean}");
         let within = close.iter().filter(|error| (*error + 0.0127).abs() < 0.03 + 0.01 * distance).count();
         assert!(within as f64 > 0.97 * close.len() as f64, "{distance} m: {within} of {}", close.len());

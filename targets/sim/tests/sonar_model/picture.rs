@@ -1,5 +1,4 @@
-//! The picture of the sonar model: the fraction of pings that hear a wall or a column, by angle, and the errors of the
-//! ranges.
+//! Draws the sonar model: the fraction of pings that hear a wall or a column, by angle, and the errors of the ranges.
 
 use svg::Document;
 use svg::node::element::{Group, Line, Path, Rectangle, Text, Title};
@@ -14,7 +13,7 @@ const CURVES: [(&str, &str, &str, f64); 3] = [
     ("wall at 5 m", "#56b4e9", WALL, 5.0),
     ("column at 1 m", "#c44e00", COLUMN, 1.0),
 ];
-/// A chart's place and size, in pixels.
+/// Size and position of a chart, in pixels.
 const WIDTH: f64 = 360.0;
 const HEIGHT: f64 = 220.0;
 const TOP: f64 = 40.0;
@@ -33,7 +32,7 @@ pub(crate) fn svg() -> String {
     format!("{}\n", document.add(ground).add(shares()).add(errors()))
 }
 
-/// Draws the share of pings that are heard against the angle between the axis and the surface's normal.
+/// Draws the fraction of pings that are heard against the angle between the axis and the surface's normal.
 fn shares() -> Group {
     let at = |degrees: f64, share: f64| (LEFT[0] + degrees / DEGREES * WIDTH, TOP + HEIGHT * (1.0 - share));
     let mut group = frame(LEFT[0], "pings heard, %", "angle off the normal, degrees");
@@ -57,7 +56,7 @@ fn shares() -> Group {
     group
 }
 
-/// Draws the errors of the ranges of a wall that faces the sonar, as a histogram.
+/// Draws a histogram of the range errors for a wall that faces the sonar.
 fn errors() -> Group {
     let heard = heard(WALL, 1.0, 0.0, MANY);
     let bars = 2 * CENTIMETRES;

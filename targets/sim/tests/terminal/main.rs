@@ -1,4 +1,4 @@
-//! Tests of the live view and the progress line in a real pseudo-terminal: neither leaves anything on the screen.
+//! Tests the live view and the progress line in a real pseudo-terminal: both clear the screen when they end.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod pseudo;
@@ -24,7 +24,7 @@ fn tour(options: &[&str]) -> Command {
 }
 
 /// Returns the output after the program has left the alternate screen. Panics unless the program entered the alternate
-/// screen before, and sent no further control sequences after leaving it.
+/// screen before, and sent no control sequences after leaving it.
 fn behind_the_screen(seen: &str) -> &str {
     let (before, behind) = seen.split_once(LEAVE).unwrap();
     assert!(before.contains(ENTER), "{seen:?}");
@@ -119,7 +119,7 @@ fn every_signal_gives_the_terminal_back() {
 fn a_terminal_that_nobody_reads_holds_up_no_end() {
     let mut terminal = Terminal::start(tour(&["--watch", "--speed", "50"]), false);
     terminal.wait_for("Ctrl-C stops the robot");
-    // Full within a second or two, of which nothing is seen from outside.
+    // The terminal's buffer is full within a second or two, which cannot be observed from outside.
     std::thread::sleep(std::time::Duration::from_secs(2));
     terminal.send(Signal::TERM);
     assert_eq!(terminal.end_unread().code(), Some(143));
@@ -147,7 +147,7 @@ fn a_file_that_may_not_grow_is_an_error_of_that_file() {
         shell.args(["-c", "ulimit -f 0; exec \"$@\"", "sh"]).arg(tour.get_program()).args(tour.get_args());
         let output = shell.arg(folder.join("file")).output().unwrap();
         let errors = String::from_utf8(output.stderr).unwrap();
-        // A log that lacks its end is a fault of the run.
+        // An incomplete log is a fault of the run.
         assert_eq!(output.status.code(), Some(if option == "--log" { 3 } else { 4 }), "{option} {errors}");
         assert!(errors.contains("cannot be written") && errors.contains("File too large"), "{option} {errors}");
     }

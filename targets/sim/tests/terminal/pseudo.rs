@@ -19,8 +19,8 @@ pub(crate) struct Terminal {
     pub(crate) seen: String,
 }
 
-/// Restores the default effect of SIGHUP in the programs that the tests start. Under `nohup` they would inherit that
-/// SIGHUP is ignored, whereas a signal that this process catches has its default effect in the programs that it starts.
+/// Restores the default action of SIGHUP in the programs that the tests start. Under `nohup` they would inherit that
+/// SIGHUP is ignored; a signal that this process catches has its default action in the programs that it starts.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {
@@ -29,8 +29,8 @@ fn catch_hang_up() {
 }
 
 impl Terminal {
-    /// Starts the program in a terminal of 100 columns and 30 rows; if `piped` is `true`, its standard output is
-    /// discarded instead of going to the terminal.
+    /// Starts the program in a terminal with 100 columns and 30 rows. If `piped` is `true`, its standard output is
+    /// discarded.
     pub(crate) fn start(command: Command, piped: bool) -> Self {
         Self::sized(command, piped, 100, 30)
     }
@@ -75,7 +75,7 @@ impl Terminal {
         self.child.wait().unwrap()
     }
 
-    /// Returns the maximum memory that the program has used so far, in kB.
+    /// Returns the peak memory of the program, in kB.
     pub(crate) fn memory(&self) -> u64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
         let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
