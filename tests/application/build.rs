@@ -1,4 +1,4 @@
-//! Makes Rust of the plan.
+//! Compiles the plan to Rust.
 
 fn main() -> Result<(), mdle_embed::EmbedError> {
     mdle_embed::plan("plans/round.mdle").target("sim").write()

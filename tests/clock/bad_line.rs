@@ -1,5 +1,5 @@
-//! A line between two robots that loses and delays states. It is placed between a sender and the peer to which the
-//! sender connects.
+//! A network line that loses and delays the states that a robot sends. It is placed between a sender and the peer to
+//! which the sender connects.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -21,18 +21,18 @@ const GREETING: usize = 21;
 pub(crate) struct Line {
     /// Percentage of states that are lost.
     pub(crate) loss: usize,
-    /// Maximum delay of a state. Delays are random, so that a state can overtake an earlier one.
+    /// Maximum delay of a state. Delays are random, so a state can overtake an earlier one.
     pub(crate) longest: Duration,
 }
 
 impl Line {
-    /// Starts a line to `peer`, and returns the address to which senders have to connect instead.
+    /// Starts a line to `peer`, and returns the address to which senders must connect instead of `peer`.
     pub(crate) fn before(self, peer: SocketAddr, seed: u64) -> SocketAddr {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let address = listener.local_addr().unwrap();
         thread::spawn(move || {
             for (number, mut stream) in (0..).zip(listener.incoming().flatten()) {
-                // A peer that is not there yet: the sender comes again.
+                // If the peer does not listen yet, the sender connects again.
                 let Ok(mut to) = TcpStream::connect(peer) else { continue };
                 let mut greeting = [0; GREETING];
                 let greeted = to.read_exact(&mut greeting).and_then(|()| stream.write_all(&greeting));
@@ -48,7 +48,8 @@ impl Line {
         address
     }
 
-    /// Receives the frames of a connection until it ends, and passes each to `frames` with the time at which it is due.
+    /// Receives the frames of a connection until it ends, and passes each to `frames` with the time at which it must be
+    /// delivered.
     fn take(self, mut from: TcpStream, frames: &Sender<(Instant, Vec<u8>)>, mut chance: Chance) -> io::Result<()> {
         loop {
             let mut length = [0; 4];
@@ -65,7 +66,7 @@ impl Line {
     }
 }
 
-/// Writes each frame to the peer when it is due.
+/// Writes each frame to the peer at its delivery time.
 fn carry(mut to: TcpStream, frames: &Receiver<(Instant, Vec<u8>)>) -> io::Result<()> {
     let mut waiting = BinaryHeap::new();
     loop {

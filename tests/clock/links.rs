@@ -36,7 +36,7 @@ fn begin(folder: &Path, name: &str, plan: &str) -> Child {
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Returns the report and the messages of a robot, and asserts that its plan is over.
+/// Waits for a run to end, asserts that its plan is over, and returns its standard output and standard error.
 fn ended(child: Child) -> String {
     let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -54,7 +54,7 @@ pub(crate) fn three_processes_meet_and_go_on_when_one_is_killed() {
     sleep(Duration::from_millis(700));
     let meets = "{ P (wait 30s) (Atom (rendezvous ada AND rendezvous eve) stop) (Atom (wait 4) stop) }";
     let bob = begin(&folder, "bob", meets);
-    // A stranger, while they meet.
+    // An unknown client connects while the robots meet.
     let mut stranger = TcpStream::connect(addresses[0]).unwrap();
     stranger.write_all(b"GET / HTTP/1.1\r\n\r\n").unwrap();
     sleep(Duration::from_millis(1500));
@@ -106,7 +106,7 @@ fn a_plan_with_unknown_robots_is_refused() {
 /// Returns the processor time that a process has used on all cores, in ticks.
 fn used(process: u32) -> u64 {
     let text = fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
-    // The name of the program may contain blanks.
+    // The name of the program may contain spaces.
     let (_, fields) = text.rsplit_once(')').unwrap();
     fields.split_whitespace().skip(11).take(2).map(|ticks| ticks.parse::<u64>().unwrap()).sum()
 }

@@ -1,5 +1,5 @@
 //! Tests of executables on emulated robots by the clock: signals, suspension and faults. No other test program runs at
-//! the same time, and these tests mostly wait.
+//! the same time; most of the time these tests wait.
 
 use std::net::{Ipv4Addr, SocketAddr, TcpListener};
 use std::sync::atomic::{AtomicU16, Ordering};
@@ -16,8 +16,8 @@ mod sent_plans;
 mod signalled;
 mod stands;
 
-/// Tests of robots whose executables are built first, which can take long. They are a single test, so that other tests
-/// do not wait for the build.
+/// Tests of robots whose executables must be built first, which can take long. They form a single test, so that other
+/// tests do not wait for the build.
 #[test]
 fn a_built_robot_stands_after_faults() {
     at_once(&[
@@ -27,7 +27,7 @@ fn a_built_robot_stands_after_faults() {
     ]);
 }
 
-/// Tests of robots whose programs are linked. They are a single test, because each of them waits most of the time.
+/// Tests of robots whose programs are linked. They form a single test, because each of them waits most of the time.
 #[test]
 fn linked_robots_go_by_the_clock() {
     at_once(&[
@@ -51,8 +51,8 @@ fn at_once(rules: &[fn()]) {
     thread::scope(|scope| rules.iter().for_each(|rule| drop(scope.spawn(rule))));
 }
 
-/// Returns addresses at which nobody listens. Each call uses a different host, because another test could otherwise get
-/// one of these free ports before the robots use it.
+/// Returns addresses at which no program listens. Each call uses a different host, because another test could otherwise
+/// take one of these free ports before the robots use it.
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 fn addresses<const COUNT: usize>() -> [SocketAddr; COUNT] {
     static HOST: AtomicU16 = AtomicU16::new(2);

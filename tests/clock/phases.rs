@@ -1,4 +1,4 @@
-//! Tests signals to the engine and to the process group of a module in each phase of a turn, and counts the turns until
+//! Tests signals to the engine, and to the process group of a module, in each phase of a turn; counts the turns until
 //! the robot is at rest.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "how many turns it took is seen with --nocapture")]
@@ -25,12 +25,12 @@ const PLAN: &str = "{ Listen (age(ears module) > 500ms OR wait 20s) (Atom (null)
 const EARS: &str = "echo $$ > $1; echo '{\"publishes\": {\"bearing\": \"deg\"}}'\n\
                     while read line; do echo '{\"bearing\": 0}'; done\n";
 const PERIOD: Duration = Duration::from_millis(100);
-/// Times from a command to the signal, in milliseconds: during the exchange, during the turn, of which a module takes
-/// 40 ms, at the turn break, and while the engine waits for the next turn.
+/// Times from a command to the signal, in milliseconds. They fall into the exchange, into the turn, of which a module
+/// takes 40 ms, into the turn break, and into the wait for the next turn.
 const MOMENTS: [u64; 6] = [0, 10, 30, 45, 60, 80];
 /// Time for which the robot drives before the signal.
 const DRIVES: Duration = Duration::from_millis(500);
-/// Maximum movement in a step of a robot that is at rest, in metres.
+/// Maximum movement in a step for which a robot counts as at rest, in metres.
 const STANDS: f64 = 1e-5;
 /// Number of runs at the same time.
 const AT_A_TIME: usize = 12;
@@ -65,14 +65,14 @@ impl Blow {
     }
 }
 
-/// Runs the plan, and sends the signal when the time `moment` has passed since a command. Returns the run, and the
-/// number of turns until the robot was at rest.
+/// Runs the plan, and sends the signal at the time `moment` after a command. Returns the run, and the number of turns
+/// from the signal until the robot was at rest.
 fn struck<R: Robot>(folder: &Path, blow: Blow, moment: Duration) -> (Ran<R>, u32) {
     let pid = folder.join(format!("{blow:?}-{}", moment.as_millis()));
     let mut command = Command::new(env!("CARGO_BIN_EXE_ahead"));
     command.args(["run", "plan.mdle", "--target", R::NAME]).current_dir(folder);
     command.arg("--module").arg(format!("ears=exec sh ears.sh {}", pid.display())).args(["--config", "config.toml"]);
-    // Time since the first command to drive, since the last command, and since the blow; pose at the last step.
+    // Times since the first command to drive, since the last command, and since the signal; pose at the last step.
     let (mut driven, mut waited, mut since) = (Duration::ZERO, Duration::ZERO, None);
     let (mut commands, mut last, mut stood) = (0, Pose::default(), None);
     let mut ran = ran_by::<R>(command, Pace::Real, None, &mut |robot, received, time| {
@@ -92,7 +92,7 @@ fn struck<R: Robot>(folder: &Path, blow: Blow, moment: Duration) -> (Ran<R>, u32
         }
         last = robot.pose();
     });
-    // Nobody commands it any more: a period has passed after the end of the program.
+    // The program has ended, and `ran_by` has let a period pass since then.
     let mut since = since.expect("a blow") + PERIOD;
     while stood.is_none() {
         ran.robot.pass(Pace::Real.step()).unwrap();
@@ -105,13 +105,13 @@ fn struck<R: Robot>(folder: &Path, blow: Blow, moment: Duration) -> (Ran<R>, u32
     (ran, u32::try_from(turns).unwrap())
 }
 
-/// Asserts that a robot comes to rest after every signal in every phase, within at most the turns that `most` gives for
-/// each kind of signal. Returns a line for each kind of signal.
+/// Asserts that a robot comes to rest after every signal in every phase. `most` contains the maximum number of turns
+/// for each kind of signal. Returns a line for each kind of signal.
 fn every_phase<R: Robot>(most: [u32; 3]) -> String {
     let folder = folder(&format!("phases_{}", R::NAME));
     fs::write(folder.join("plan.mdle"), PLAN).unwrap();
     fs::write(folder.join("ears.sh"), EARS).unwrap();
-    // All sonars of a Scout have pinged soon.
+    // With this gap, all sonars of a Scout ping early.
     fs::write(folder.join("config.toml"), if R::NAME == Scout::NAME { "gap = 4\n" } else { "" }).unwrap();
     let cases: Vec<_> = Blow::ALL.into_iter().flat_map(|blow| MOMENTS.map(|moment| (blow, moment))).collect();
     let (next, turns) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
@@ -137,7 +137,7 @@ fn every_phase<R: Robot>(most: [u32; 3]) -> String {
     lines.concat()
 }
 
-/// Asserts the exit status, the messages and the last commands of the program after the signal.
+/// Asserts the exit status, the messages and the last command after the signal.
 fn assert_end<R: Robot>(blow: Blow, ran: &Ran<R>) {
     let (status, errors) = (ran.output.status.code(), ran.errors());
     let bytes = &ran.received.bytes;
@@ -165,7 +165,7 @@ fn assert_end<R: Robot>(blow: Blow, ran: &Ran<R>) {
 
 #[test]
 fn a_robot_stands_after_a_signal_in_each_phase() {
-    // Without the engine the watchdogs of both stop them after a second.
+    // If the engine is killed, the watchdogs of both robots stop them after a second.
     let (scout, atrv) = thread::scope(|scope| {
         let scout = scope.spawn(|| every_phase::<Scout>([16, 8, 16]));
         let atrv = every_phase::<Atrv>([16, 8, 16]);

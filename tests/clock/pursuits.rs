@@ -1,5 +1,5 @@
 //! Tests local pursuit by three programs that are linked over TCP (paper, section IV-D): simulated robots on a line
-//! that loses and delays states, and emulated Scouts in one world, of which one program may be killed.
+//! that loses and delays states, and emulated Scouts in one world. In some tests, a program is killed.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test tells")]
 
@@ -25,7 +25,7 @@ use mdle_tests::ways::{Place, excess};
 use crate::bad_line::Line;
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// The robots, each with its name, its plan, its start on the first axis in metres, and the option by which it records
+/// The robots, each with its name, its plan, its start on the first axis in metres, and the option that makes it record
 /// its paths.
 const ROBOTS: [(&str, &str, f64, &str); 3] = [
     ("robot1", "first_robot", 0.0, " --records lastPath --paths robot1"),
@@ -81,7 +81,7 @@ fn begin(folder: &Path, number: usize, options: &str) -> Child {
 struct Course {
     status: Option<i32>,
     report: String,
-    /// For each trip, `true` if the robot led it, and the robot's places by odometry.
+    /// For each trip, `true` if the robot led it, and the robot's positions by odometry.
     trips: Vec<(bool, Vec<Place>)>,
 }
 
@@ -105,8 +105,8 @@ impl Course {
     }
 }
 
-/// Returns the trips that a robot made by `path` and `Follow` according to its report. `places` are its places over
-/// time.
+/// Returns the trips that a robot made by `path` and `Follow`, according to its report. `places` contains the robot's
+/// positions over time.
 fn trips(report: &str, places: &[(f64, Place)]) -> Vec<(bool, Vec<Place>)> {
     let lines: Vec<(f64, &str)> = report
         .lines()
@@ -140,7 +140,7 @@ fn assert_converge(test: &str, courses: &[Course; 3], laps: u64) {
 }
 
 pub(crate) fn simulated_robots_learn_over_a_bad_line() {
-    // As fast as the clock with all laps, or else four times as fast with a line that is.
+    // All laps in real time; a short test runs two laps with a robot and a line that are four times as fast.
     let (laps, speed) = (sized(2, 4), sized(4, 1));
     for seed in 0..sized(1, 5) {
         let line = Line { loss: 10, longest: Duration::from_millis(200) / speed };
@@ -159,7 +159,7 @@ pub(crate) fn simulated_robots_learn_over_a_bad_line() {
     }
 }
 
-/// A robot whose program is killed: its number, and the time in its world.
+/// A robot whose program is killed: its number, and the time of its world at which this happens.
 type Victim = (usize, Duration);
 
 /// An emulated Scout that adds the time of its steps to `time`.
@@ -179,7 +179,7 @@ impl Emulated for Timed {
 
     fn pass(&mut self, time: Duration) -> Result<(), String> {
         self.time.set(self.time.get() + time);
-        // In lockstep the world would outrun the link, which goes by the clock: states would be late by seconds.
+        // In lockstep, the world would outrun the link, which runs in real time: states would be seconds late.
         sleep(SLOWER);
         self.scout.pass(time)
     }
@@ -227,9 +227,9 @@ fn on_scouts(folder: &Path, pace: Pace, seed: u64, victim: Option<Victim>) -> [C
     let (children, begun) = (RefCell::new(started), Instant::now());
     let goes_on = || {
         let mut children = children.borrow_mut();
-        // Each of the three robots counts.
+        // `time` is the sum for the three robots.
         if let Some((number, _)) = victim.filter(|(_, at)| time.get() / 3 >= *at) {
-            // It may have been killed before, which changes nothing.
+            // Killing a program again has no effect.
             children[number].kill().unwrap();
         }
         if begun.elapsed() > LONGEST {
@@ -257,7 +257,7 @@ pub(crate) fn scouts_in_one_world_learn_over_tcp() {
 pub(crate) fn a_program_that_dies_leaves_no_scout_waiting() {
     let mut chance = Chance::new(7);
     let mut times = (0..repeated(4)).map(|run| (run, Duration::from_millis(chance.below(65_000) as u64)));
-    // Two at the same time, as they mostly wait.
+    // Two runs at the same time, because they wait most of the time.
     while let Some(first) = times.next() {
         thread::scope(|scope| {
             iter::once(first).chain(times.next()).for_each(|(run, time)| drop(scope.spawn(move || killed(run, time))));
@@ -265,7 +265,7 @@ pub(crate) fn a_program_that_dies_leaves_no_scout_waiting() {
     }
 }
 
-/// Asserts that two Scouts continue or end their plans after the program of the third one was killed at this time.
+/// Asserts that two Scouts continue or end their plans after the program of the third Scout was killed at this time.
 fn killed(run: u64, time: Duration) {
     let folder = prepared(&format!("scouts_killed_{}", run % 2), 2, "2min", None, 0);
     let victim = run as usize % 3;

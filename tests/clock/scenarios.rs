@@ -1,4 +1,4 @@
-//! Tests a signal during a scenario: the scenario ends in order, and everything written so far is complete.
+//! Tests a signal during a scenario: the scenario ends properly, and all files written so far are complete.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

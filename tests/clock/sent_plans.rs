@@ -1,4 +1,4 @@
-//! Tests attributes of modules and plans between two processes that are linked over TCP, by the clock.
+//! Tests that two processes linked over TCP exchange attributes of modules, and plans, by the clock.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -31,7 +31,7 @@ fn begin(folder: &Path, words: &[&str]) -> Child {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Returns the report and the messages of a robot, with its exit status.
+/// Waits for a run to end and returns its standard output, its standard error and its exit status.
 fn ended(child: Child) -> String {
     let Output { status, stdout, stderr } = child.wait_with_output().unwrap();
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -58,8 +58,8 @@ pub(crate) fn a_plan_reads_a_module_of_another_process() {
     assert!(text.starts_with("the same to the bit, "), "{text}");
 }
 
-/// Runs a session of `ada`, which sends a plan to `bob`. `of_ada` and `of_bob` are additional entries for the peers.
-/// Returns the outputs of both.
+/// Runs a session of `ada`, which sends a plan to `bob`. `of_ada` and `of_bob` are additional entries in the link files
+/// about the peer. Returns the outputs of both robots.
 fn send(test: &str, [of_ada, of_bob]: [&str; 2], plan: &str) -> [String; 2] {
     let folder = folder(test);
     with_links(&folder, [("", of_ada), ("", of_bob)]);

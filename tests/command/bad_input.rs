@@ -10,7 +10,7 @@ use mdle_tests::executable::{folder, run_mdlec};
 /// A plan without errors.
 const REST: &str = "{ Rest (Atom (wait 1ms) stop) }\n";
 
-/// Returns a command, its standard error and its exit status, as a user sees them.
+/// Returns a command with its standard error and its exit status, as a user sees them.
 fn transcript(folder: &Path, arguments: &[&str]) -> String {
     let before = listing(folder);
     let output = run_mdlec(folder, arguments);
@@ -277,7 +277,7 @@ fn more_passes_than_can_be_counted_are_an_error() {
     }
 }
 
-/// Arguments of commands that write, each with the plan's file or a file that it uses as the output.
+/// Arguments of commands that write a file, each with the plan's file or a file that the plan uses as the output.
 const OVER_AN_INPUT: [&[&str]; 9] = [
     &["plan.mdle", "--target", "sim", "-o", "legs.mdle"],
     &["plan.mdle", "--target", "sim", "-o", "./folder/../plan.mdle"],

@@ -1,7 +1,7 @@
-//! Tests inputs that need more resources than any computer has, through the real binaries. Each command ends within
-//! stated memory and time, with a result or with a message that names the limit.
+//! Tests inputs that exceed the resources of any computer, through the real binaries. Each command ends within a limit
+//! of memory and time, with a result or with a message that names the limit.
 //!
-//! For plans just within the limits, an unoptimized mdlec needs two minutes; without `MDLE_LONG` the plans here are
+//! An unoptimized mdlec needs two minutes for plans just within the limits; without `MDLE_LONG` the plans here are
 //! smaller.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -27,13 +27,13 @@ fn limited(folder: &Path, program: &Path, arguments: &[impl AsRef<OsStr>]) -> Ou
     command.current_dir(folder).env("MDLEC_CACHE", cache()).output().expect("a shell")
 }
 
-/// Returns the exit status and the messages of a command, whatever its output is.
+/// Returns the exit status and the messages of a command; ignores its output.
 fn judged(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     let output = limited(folder, mdlec(), arguments);
     (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
 }
 
-/// Returns a plan `P` that uses a plan `uses[0]` times, which uses another plan `uses[1]` times, and so on. The
+/// Returns a plan `P` that uses a second plan `uses[0]` times, which uses a third plan `uses[1]` times, and so on. The
 /// innermost plan is `inmost`, with its own name in place of `NAME`.
 fn multiplied(uses: &[usize], inmost: &str) -> String {
     let name = |level: usize| if level == 0 { "P".to_owned() } else { format!("L{level}") };
@@ -82,7 +82,7 @@ fn assert_refused(test: &str, plan: &str, message: &str) {
         let (status, messages) = judged(&folder, &[command, &["plan.mdle"]].concat());
         let start: String = messages.chars().take(1000).collect();
         assert_eq!(status, Some(1), "{command:?}: {start}");
-        // `check --target all` has a table above it.
+        // `check --target all` prints a table first.
         assert!(messages.contains(message) && messages.contains("error[E0501]: "), "{command:?}: {start}");
     }
 }
@@ -103,7 +103,7 @@ fn operands_that_plans_multiply_are_limited() {
     let plan = multiplied(&[10; 4], &format!("{{ NAME (Atom ({}) stop) }}\n", operands(1000)));
     let message = "error[E0501]: `L1` has 1000000 operands of conditions";
     assert_refused("fewer_operands", &plan, message);
-    // The place that multiplies.
+    // The message also names the use that multiplies the operands.
     assert_refused("fewer_operands", &plan, "`L2` is used 10 times, with 100000 operands of conditions each time");
 }
 
@@ -195,7 +195,7 @@ fn loops_multiply_conditions_within_limits() {
 
 #[test]
 fn limits_are_asked_before_a_plan_is_lowered() {
-    // What the machine of a plan shows is not reported of a plan that has none.
+    // This warning needs the plan's machine; it is not printed for a plan that is not lowered to a machine.
     let never = "(Atom (bumper AND NOT bumper OR wait 1) stop)";
     let assert_is_asked = |test: &str, plan: &str, commands: &[&[&str]], limit: &str| {
         let folder = with_plan(test, plan);

@@ -1,4 +1,4 @@
-//! Tests the output of `mdlec` without errors, through the real binary.
+//! Tests the output of `mdlec` commands that succeed, through the real binary.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
@@ -15,8 +15,7 @@ use mdle_tests::golden::{judge, rust};
 use mdle_tests::repository::{TextFile, root};
 use serde_json::Value;
 
-/// A plan in which each stage differs from the previous one: it has a unit, a plan by name, a repeated interrupt, and a
-/// loop.
+/// A plan that each stage of the compiler changes: it has a unit, a plan by name, a repeated interrupt, and a loop.
 const PLAN: &str = "\
 /// Ahead, then a shake.
 { Outing (bumper)
@@ -34,7 +33,7 @@ const SCRIPT: &str = r#"{"t": 0.0, "fired": [], "completed": []}
 {"t": 0.1, "fired": ["atIsection 0100", "bumper"], "completed": ["align 7 9"]}
 "#;
 
-/// The trace (docs/src/reference/interfaces.md, 4) of the plan from lab 2 to lab 1 on the script.
+/// The trace (docs/src/reference/interfaces.md, 4) of the plan from lab 2 to lab 1 on this script.
 const TRACE: &str = r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}
 {"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":0,"by":"bumper","operands":["bumper"]}]}
 "#;
@@ -45,13 +44,13 @@ fn with_plan(test: &str, plan: &str) -> PathBuf {
     folder
 }
 
-/// Returns standard output of a command that succeeds.
+/// Asserts that a command succeeded, and returns its standard output.
 fn printed(output: Output) -> String {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// Returns standard output of a command that succeeds and prints nothing on standard error.
+/// Asserts that a command succeeded without output on standard error, and returns its standard output.
 fn printed_alone(output: Output) -> String {
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
     printed(output)
@@ -111,7 +110,7 @@ fn a_script_can_come_from_standard_input() {
 #[test]
 fn stages_are_printed() {
     let folder = with_plan("stages", PLAN);
-    // The Rust is compared with what the emitter writes, below.
+    // The emitted Rust is compared below, with the result of the emitter.
     let stages = KINDS.iter().filter(|kind| **kind != "rust");
     let stages: Vec<_> = stages.map(|kind| format!("$ --emit {kind}\n{}", emitted(&folder, kind))).collect();
     insta::assert_snapshot!(format!("{PLAN}----\n{}", stages.join("\n")));

@@ -1,5 +1,5 @@
-//! Tests of `mdlec` when it cannot continue, because of a signal, a closed pipe or a full disk, through the real
-//! binary. No file is left, and the next build works.
+//! Tests `mdlec` when it is stopped by a signal, a closed pipe or a full disk, through the real binary. No partial file
+//! is left, and the next build works.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::ffi::OsString;
@@ -15,7 +15,7 @@ use mdle_tests::executable::{cache, command, folder, mdlec, run_mdlec, without_w
 
 const PLAN: &str = "plan.mdle";
 
-/// A cargo that reports that it is at work, has a child process, and never ends by itself.
+/// A script in place of cargo, which reports that it is at work, starts a child process, and never ends by itself.
 const CARGO: &str = "#!/bin/sh\nexec 3> \"$AT_WORK\"\necho at work >&3\nsleep 900 &\nwait\necho survived >&3\n";
 
 fn with_plan(test: &str) -> PathBuf {
@@ -30,7 +30,7 @@ fn listing(folder: &Path) -> Vec<OsString> {
     names
 }
 
-/// Returns the exit status and standard error, without messages about the builds of other tests.
+/// Returns the exit status and standard error, without the messages that name builds of other tests.
 fn report(output: &Output) -> (Option<i32>, String) {
     let message = String::from_utf8(output.stderr.clone()).expect("UTF-8");
     assert!(!message.contains("panicked"), "{message}");
@@ -63,7 +63,7 @@ fn with_cargo_at_work(folder: &Path) -> (Child, BufReader<File>, JoinHandle<Stri
     let pipe = at_work.clone();
     let message = thread::spawn(move || {
         let message = io::read_to_string(stderr).unwrap();
-        // Should mdlec have ended before its cargo was there, the test must not wait for cargo any longer.
+        // If mdlec ended before its cargo started, this ends the test's wait for cargo.
         File::options().read(true).write(true).open(pipe).unwrap();
         message
     });
@@ -81,7 +81,7 @@ fn assert_signal_ends_all(signal: &str, status: i32) {
     assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
     let ended = child.wait().unwrap();
     assert_eq!((ended.code(), without_waiting(&message.join().unwrap())), (Some(status), String::new()), "{signal}");
-    // The end of it comes when nobody is left who could write: neither cargo nor its child.
+    // The pipe ends when no process can write to it any more: neither cargo nor its child is left.
     assert_eq!(io::read_to_string(heard).unwrap(), "", "{signal}");
     assert_eq!(listing(&folder), ["at_work", PLAN, "tools"], "{signal}");
     assert_builds(&folder);
@@ -93,7 +93,7 @@ fn a_killed_mdlec_takes_its_cargo_with_it() {
     let (mut child, heard, message) = with_cargo_at_work(&folder);
     child.kill().unwrap();
     assert_eq!(child.wait().unwrap().signal(), Some(9));
-    // The end of it comes when nobody is left who could write: neither cargo nor its child.
+    // The pipe ends when no process can write to it any more: neither cargo nor its child is left.
     assert_eq!(io::read_to_string(heard).unwrap(), "");
     assert_eq!(without_waiting(&message.join().unwrap()), "");
     assert_builds(&folder);
@@ -123,7 +123,8 @@ fn no_room(path: &str) -> (Option<i32>, String) {
 fn a_full_cache_fails_and_the_next_build_works() {
     let folder = with_plan("no_room_in_cache");
     assert_builds(&folder);
-    // Room for the sources of another plan and the list of what is compiled, not for what is compiled from them.
+    // There is space for the sources of another plan and for the list of compiled files, but not for the compiled
+    // files.
     fs::write(folder.join(PLAN), "{ Rest (Atom (wait 1ms) (go 1 0)) }\n").unwrap();
     let before = listing(&folder);
     let shared = cache().canonicalize().unwrap();
@@ -168,7 +169,7 @@ fn a_full_device_is_reported() {
         );
     }
     assert_eq!(report(&run_mdlec(&folder, &[PLAN, "--emit", "tree=/dev/full"])), no_room("/dev/full"));
-    // Nobody can be told, and the status still says it.
+    // The message cannot be printed, but the exit status is set.
     let output = command(&folder, &["check", "missing.mdle"]).stderr(full()).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
 }
@@ -188,7 +189,7 @@ fn a_reader_that_went_away_is_no_error() {
         (2, &["--nonsense"]),
         (0, &[PLAN, "--target", "sim"]),
     ] {
-        // Nobody holds the other ends from the beginning.
+        // The reading ends of these pipes are closed from the start.
         let gone = || std::io::pipe().unwrap().1;
         let ended = command(&folder, arguments).stdout(gone()).stderr(gone()).status().unwrap();
         assert_eq!(ended.code(), Some(status), "{arguments:?}");

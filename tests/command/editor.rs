@@ -1,4 +1,4 @@
-//! Tests `mdlec lsp` and `mdlec dap` as the real binary, on its standard input and output. The features are tested in
+//! Tests `mdlec lsp` and `mdlec dap` as the real binary, on standard input and output. Their features are tested in
 //! `editors/server` and `editors/debugger`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -10,7 +10,7 @@ use mdle_compiler::diagnostic::{Code, Example};
 use mdle_tests::executable::{folder, run_mdlec};
 use serde_json::Value;
 
-/// Code of a defect of the compiler. It has no examples, because no plan causes it.
+/// Code of a bug in the compiler. It has no examples, because no plan causes it.
 const WITHOUT_EXAMPLES: Code = Code::E0901;
 
 /// Returns the codes that have examples.
@@ -22,7 +22,7 @@ fn with_examples() -> impl Iterator<Item = Code> {
 
 /// Returns the messages about an example, in the format `human` or `json`.
 fn messages(folder: &Path, example: &Example, format: &str) -> String {
-    // What an example calls `\xDF` is that byte.
+    // In the text of an example, `\xDF` stands for this byte.
     let bytes = example.text.split("\\xDF").map(str::as_bytes).collect::<Vec<_>>().join(&b'\xDF');
     let file = if example.arguments.iter().any(|argument| argument == ".") { "alphabet.mdle" } else { "plan.mdle" };
     fs::write(folder.join(file), bytes).unwrap();

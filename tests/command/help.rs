@@ -33,7 +33,7 @@ const COMMANDS: [&str; 20] = [
     "man",
 ];
 
-/// First words with which a line must not begin, because they do not say what the line is about.
+/// Words with which a line must not begin, because they do not name its subject.
 const OPENERS: [&str; 13] =
     ["What", "How", "Whether", "Where", "Which", "When", "Its", "The", "Says", "Lists", "Runs", "Finds", "Writes"];
 
@@ -151,7 +151,7 @@ fn executables_describe_their_options_in_a_line() {
     insta::assert_snapshot!(shown);
 }
 
-/// Returns the options of an executable with the placeholders of their values, as its help lists them.
+/// Returns the options of an executable as its help lists them, with the placeholders of their values.
 fn options_of(help: &str) -> String {
     let lines =
         help.lines().filter_map(|line| line.trim_start().split_once("--").filter(|(before, _)| before.len() < 5));

@@ -1,5 +1,5 @@
-//! Tests that `mdlec` never prints text that could control a terminal or reverse lines, from plans, file names, options
-//! and machines.
+//! Tests that `mdlec` never prints text from plans, file names, options or machines that could control a terminal or
+//! reverse lines.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -15,7 +15,7 @@ use mdle_tests::executable::{command, folder};
 use mdle_tests::golden::alphabet;
 use mdle_tests::xml;
 
-/// A text that colours and clears a terminal, renames its window, rings the bell, returns to the start of the line, and
+/// Text that colors and clears a terminal, renames its window, rings the bell, returns to the start of the line, and
 /// reverses text.
 const HOSTILE: &str = "a\u{1b}[2J\u{1b}]0;x\u{7}\u{9b}31m\r\u{202e}\u{2066}\u{200f}\u{2028}\u{7f}z";
 
@@ -40,7 +40,7 @@ fn assert_printable(output: &Output, arguments: &[&str]) {
     }
 }
 
-/// A plan that is valid, but has hostile comments and a hostile file name.
+/// A valid plan with hostile comments and a hostile file name.
 const GOOD: &str =
     "// HOSTILE\n/// HOSTILE\n{ P (bumper OR wait 1)\n  // HOSTILE\n  (Atom (wait 2) path \"HOSTILE\")\n}\n";
 

@@ -1,5 +1,5 @@
-//! Tests plans of a size that nobody writes by hand, through the real binary: nesting that is too deep is a single
-//! error that names the limit, and plans that are only long are processed.
+//! Tests very large plans, through the real binary: nesting that is too deep is a single error that names the limit,
+//! and plans that are only long are processed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -29,7 +29,7 @@ fn messages(folder: &Path, plan: &str, arguments: &[&str]) -> (Option<i32>, Stri
     (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
-/// Returns two texts with deeply nested parts: one in which all parts are closed, and one in which no part is closed.
+/// Returns two texts with deeply nested parts. In the first text all parts are closed, and in the second none.
 fn nested(before: &str, opened: &str, inside: &str, closed: &str, behind: &str) -> [String; 2] {
     let open = format!("{before}{}{inside}", opened.repeat(MANY));
     [format!("{open}{}{behind}", closed.repeat(MANY)), format!("{open}{behind}")]
@@ -62,11 +62,11 @@ fn what_nests_too_deep_is_one_error_that_names_the_limit() {
 #[test]
 fn what_is_only_long_comes_to_a_result() {
     let folder = folder("long");
-    // As many take an unoptimized mdlec a minute.
+    // An unoptimized mdlec takes a minute for `MANY` operands.
     let many = sized(MANY / 10, MANY);
     let operands: Vec<_> = (1..=many).map(|seconds| format!("wait {seconds}")).collect();
     let elements: Vec<_> = (1..=many).map(|seconds| format!("  (Atom (wait {seconds}) stop)\n")).collect();
-    // The first is one line, which `fmt` breaks.
+    // The first plan is on one line, which `fmt` breaks.
     let plans = [
         (format!("{{ P\n  (Atom ({}) stop)\n}}\n", operands.join(" OR ")), (Some(1), "plan.mdle\n")),
         (format!("{{ P\n{}}}\n", elements.concat()), (Some(0), "")),
@@ -119,6 +119,6 @@ fn a_hundred_errors_are_shown_on_a_terminal() {
     assert_eq!(status, Some(1));
     assert!(text.len() < 10_000 && text.contains("\n… and "), "{} bytes", text.len());
     let (status, _, text) = messages(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
-    // A program is told all of them: each repetition has three mistakes.
+    // For programs, all errors are printed: each repetition has three errors.
     assert_eq!((status, text.lines().count()), (Some(1), MANY / 2 * 3));
 }

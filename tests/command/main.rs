@@ -1,4 +1,4 @@
-//! Tests of the command line of `mdlec`: options, output, messages and limits, through the real binary.
+//! Tests of the command line of `mdlec` and `mdle`: options, output, messages and limits, through the real binaries.
 
 mod bad_input;
 mod budgets;

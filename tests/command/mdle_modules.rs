@@ -1,4 +1,4 @@
-//! Tests of modules in `mdle shell`: their attributes and settings, and how they are stopped, unloaded and loaded.
+//! Tests modules in `mdle shell`: their attributes and settings, and how they are stopped, unloaded and loaded.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;

@@ -1,4 +1,4 @@
-//! Tests of plans and modules in `mdle shell` that are loaded, replaced and refused while the robot drives.
+//! Tests that `mdle shell` loads, replaces and refuses plans and modules while the robot drives.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use crate::mdle_shell::{Left, dialogue, piped};
 use mdle_tests::executable::folder;
 
-/// Returns a folder with a plan that turns on the spot, and with other plans to replace it.
+/// Returns a folder with a plan that turns on the spot, and with plans that replace it.
 fn with_plans(test: &str) -> PathBuf {
     let folder = folder(test);
     let files = [
@@ -100,7 +100,7 @@ fn a_cancelled_plan_does_not_take_over() {
 #[test]
 fn large_plans_take_over_as_small_ones_do() {
     let folder = with_plans("shell_large");
-    // A megabyte of text, and a trillion states.
+    // The plan has a megabyte of text and a trillion states.
     let atoms = "  (Atom (wait 1000s AND NOT (x > 1000m)) (go 30 0)) // an atom of a very long plan\n".repeat(12_500);
     let megabyte = format!("{{ Megabyte (bumper)\n{atoms}}}\n");
     assert!(megabyte.len() > 1_000_000);

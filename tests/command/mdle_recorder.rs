@@ -1,4 +1,4 @@
-//! Tests of the recorder of a session: a record begins and ends while the robot drives.
+//! Tests the recorder of a session: a record begins and ends while the robot drives.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -54,7 +54,8 @@ fn only_an_admin_may_record() {
     assert!(refused.contains("admin") && refused.ends_with("[1]\n") && !folder.join("part.mcap").exists(), "{refused}");
 }
 
-/// The recorder counts no turn that is not in the file. The last second may be in it, although it is not counted.
+/// The recorder counts only turns that are in the file. The file may also contain turns of the last second that are not
+/// counted.
 #[test]
 fn turns_that_the_file_lacks_are_not_counted() {
     let folder = folder("recorder_limit");

@@ -1,4 +1,4 @@
-//! Tests of `mdle run`: the answers of its command line, and its exit statuses if nothing runs.
+//! Tests the command line of `mdle run`: its messages, and its exit statuses if nothing is run.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -15,7 +15,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Returns standard output and standard error of `mdle` with these arguments, and its exit status.
+/// Runs `mdle` with these arguments, and returns its standard output, its standard error and its exit status.
 fn report(folder: &Path, line: &str) -> String {
     let Output { status, stdout, stderr } = run(folder, &line.split(' ').collect::<Vec<_>>());
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());

@@ -1,4 +1,4 @@
-//! Tests of `mdle shell`: complete dialogues in stepped time, and messages about wrong commands.
+//! Tests `mdle shell`: complete dialogues in stepped time, and messages about wrong commands.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -41,7 +41,7 @@ fn started(folder: &Path, options: &[&str]) -> Child {
 /// Runs a session with these bytes as its standard input.
 pub(crate) fn piped(folder: &Path, options: &[&str], input: &[u8]) -> Left {
     let mut child = started(folder, options);
-    // A session may end before it has read everything.
+    // A session may end before it has read the whole input.
     let _ = child.stdin.take().unwrap().write_all(input);
     let output = child.wait_with_output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -155,7 +155,8 @@ fn a_file_goes_on_after_the_run() {
     assert_eq!(left.out, "31 turns, 3s, and the plan is over\n31\n");
 }
 
-/// `get` answers by the state in which a run has ended, and what waits for a turn names the reason.
+/// After a run that its plan did not end, `get` still answers, and commands that wait for a turn report the reason of
+/// the end.
 #[test]
 fn a_run_that_ends_otherwise_than_by_its_plan_says_why() {
     let folder = with_plan("shell_otherwise");
@@ -200,7 +201,7 @@ fn a_run_that_ends_otherwise_than_by_its_plan_says_why() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
 }
 
-/// A desk that waits for a request looks at once: 300 readings took 6 s and more.
+/// Requests are handled at once while the clock is paused; with a delay, 300 readings would take 6 s and more.
 #[test]
 fn a_reading_waits_for_no_turn_while_the_clock_stands() {
     let (folder, begun) = (with_plan("shell_readings"), Instant::now());

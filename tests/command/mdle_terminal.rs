@@ -1,5 +1,5 @@
-//! Tests of `mdle shell` at a pseudo-terminal: the line that is being typed, its completion and history, and the text
-//! that is printed above it.
+//! Tests `mdle shell` on a pseudo-terminal: the line that is being typed, its completion and history, and text that is
+//! printed above it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
@@ -15,10 +15,10 @@ use mdle_tests::executable::{folder, mdle};
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{Termios, Winsize, tcgetattr, tcsetwinsize};
 
-/// Maximum wait for an expected text.
+/// Maximum time to wait for an expected text.
 const LONG: Duration = Duration::from_secs(60);
 
-/// A program at a terminal.
+/// A program on a terminal.
 struct AtTerminal {
     child: Child,
     keys: File,
@@ -66,8 +66,8 @@ impl AtTerminal {
         String::from_utf8_lossy(&self.shown.lock().unwrap()).into_owned()
     }
 
-    /// Waits until all these texts have appeared in order, from the position `from` in the output on; returns the
-    /// position after them.
+    /// Waits until all these texts have appeared in order in the output, from the position `from`. Returns the position
+    /// after the last text.
     fn wait_for(&self, from: usize, texts: &[&str]) -> usize {
         let begun = Instant::now();
         loop {
@@ -83,7 +83,7 @@ impl AtTerminal {
         }
     }
 
-    /// Waits for the end of the program, and checks that the modes of the terminal are restored.
+    /// Waits for the end of the program, and asserts that the modes of the terminal are restored.
     fn end(mut self) -> (ExitStatus, String) {
         let status = self.child.wait().unwrap();
         let after = tcgetattr(&self.screen).unwrap();
@@ -100,19 +100,19 @@ fn a_report_leaves_the_line_alone_that_is_typed() {
     let begun = terminal.wait_for(0, &["/ > "]);
     terminal.press("get /usr/mdle/mai");
     let typed = terminal.wait_for(begun, &["mai"]);
-    // The report clears the line, and the line is written again below it.
+    // A report clears the typed line, which is written again below the report.
     let again = terminal.wait_for(typed, &["<- wait", "\n", "/ > ", "get /usr/mdle/mai"]);
     let again = terminal.wait_for(again, &["<- wait", "\n", "/ > ", "get /usr/mdle/mai"]);
     terminal.press("\t\r");
     let answer = terminal.wait_for(again, &["main", "\n", "Typed", "\n", "/ > "]);
-    // The last line of the history.
+    // Recalls the last line of the history.
     terminal.press("\x1b[A\r");
     let answer = terminal.wait_for(answer, &["get /usr/mdle/main", "Typed", "/ > "]);
     terminal.press("watch /clock/turns\r");
     let answer = terminal.wait_for(answer, &["s  /clock/turns ", "s  /clock/turns "]);
     terminal.press("wait 100ms\r");
     terminal.wait_for(answer, &["turns, ", "/ > "]);
-    // Several lines that are typed, or pasted, at once.
+    // Several lines are typed, or pasted, at once.
     let answer = answer + terminal.shown().get(answer..).map_or(0, str::len);
     terminal.press("cd /usr/robot\rpwd\rget /clock/period\r");
     terminal.wait_for(answer, &["/usr/robot > ", "pwd", "/usr/robot", "get /clock/period", "0.1s", "/usr/robot > "]);

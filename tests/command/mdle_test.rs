@@ -1,5 +1,4 @@
-//! Tests of `mdle test`: tests that fail and their messages, test files that have errors, and the tests of the plans in
-//! `plans/`.
+//! Tests `mdle test`: messages about failed tests, errors in test files, and the tests of the plans in `plans/`.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -20,14 +19,14 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(mdle()).arg("test").args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Returns standard output and standard error of `mdle test` with these arguments, and its exit status.
+/// Runs `mdle test` with these arguments, and returns its standard output, its standard error and its exit status.
 fn report(folder: &Path, arguments: &[&str]) -> String {
     let Output { status, stdout, stderr } = run(folder, arguments);
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     format!("$ mdle test {}\n{out}{err}[{}]\n", arguments.join(" "), status.code().unwrap())
 }
 
-/// Returns a folder with this plan, and these tests beside it.
+/// Returns a folder with this plan and a file of tests for it.
 fn with(name: &str, plan: &str, tests: &str) -> PathBuf {
     let folder = folder(name);
     fs::write(folder.join("dock.mdle"), plan).unwrap();

@@ -1,4 +1,4 @@
-//! Tests of `mdle test`: coverage, pictures, results for programs, recorded expectations, repeated runs, and faults
+//! Tests of `mdle test`: coverage, pictures, machine-readable results, recorded expectations, repeated runs, and faults
 //! that are inserted into plans of the book.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -102,7 +102,7 @@ expect.order = [\"go 20 0\"]
 ";
     let folder = with("update", tests);
     let output = run(&folder, &["--update"]);
-    // An `expect.never` has no value that can be recorded.
+    // `expect.never` has no value that could be recorded.
     assert_eq!(output.status.code(), Some(1));
     let updated = fs::read_to_string(folder.join("dock.test.toml")).unwrap();
     insta::assert_snapshot!(format!("{}\n{updated}", out(&output)));
@@ -134,7 +134,7 @@ fn tests_run_again_when_a_file_changes() {
     child.wait().unwrap();
 }
 
-/// A fault in a plan of the book: the plan, the text that is replaced, its replacement, and the test that must fail.
+/// Faults in plans of the book, each with the plan, the text to replace, its replacement, and the test that must fail.
 const FAULTS: [[&str; 4]; 4] = [
     ["patrol", "Leg(180deg, 3m, 40cm/s)", "Leg(100deg, 3m, 40cm/s)", "three rounds up and down the hall"],
     ["wall_following", "(r2 < 1m OR r0 < 70cm)", "(r2 < 1m)", "it bears left to the wall, and right off it"],

@@ -21,8 +21,8 @@ const PLANS: u64 = 60;
 /// Number of scripts of each plan.
 const SCRIPTS: usize = 4;
 
-/// Returns a test that expects the behavior of a plan on a script, and the number of transitions that it expects.
-/// Returns `None` if a turn is cut, because an atom is then entered whose law is not applied.
+/// Returns a test that expects the behavior of a plan on a script, and the number of expected transitions. Returns
+/// `None` if a turn is cut, because it then enters an atom whose law is not applied.
 fn test(compiled: &Compiled, number: usize, script: &str) -> Option<(String, usize)> {
     let (mut atoms, mut transitions) = (Vec::new(), Vec::new());
     let mut before: Option<String> = None;
@@ -53,7 +53,7 @@ fn test(compiled: &Compiled, number: usize, script: &str) -> Option<(String, usi
 fn turn(compiled: &Compiled, line: &str) -> String {
     let line: Value = serde_json::from_str(line).unwrap();
     let [fired, completed] = ["fired", "completed"].map(|key| {
-        // A law that never completes is an error in `completed`.
+        // In `completed`, a law that never completes is an error.
         let is_known = |text: &&Value| {
             let mut quarks = compiled.machine.quarks().iter().filter(|quark| quark.text == text.as_str().unwrap());
             quarks.any(|quark| key == "fired" || quark.completes)

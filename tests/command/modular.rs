@@ -1,4 +1,4 @@
-//! The program `mdle` with modules that have attributes and settings of every kind, for `mdle_modules.rs`.
+//! The program `mdle` with modules that have attributes and settings of every kind, used by `mdle_modules.rs`.
 
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -8,7 +8,7 @@ use std::time::Duration;
 use mdle::engine::{Background, Declare, Exchange, Fault, In, Module, Out, Turn};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, Sensed};
 
-/// Value of the setting `name` with which a module never returns from its turn.
+/// Value of the setting `name` that makes a module hang in its turn.
 const HANGS: &str = "for ever";
 
 /// A module that publishes the bearing and range of a point ahead, and a copy of its settings.

@@ -1,4 +1,4 @@
-//! Tests typical mistakes of a beginner: each message, as text and as JSON, names what to type instead.
+//! Tests a beginner's typical mistakes: each message, as text and as JSON, names what to type instead.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;

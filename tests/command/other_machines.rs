@@ -5,8 +5,7 @@ use std::fs;
 
 use mdle_tests::executable::{folder, run_mdlec};
 
-/// Returns the message of mdlec about a build with these arguments, which must fail with exit status 2 and write
-/// nothing.
+/// Returns the message of a build with these arguments. Asserts that it fails with exit status 2 and writes nothing.
 fn refusal(test: &str, arguments: &[&str]) -> String {
     let folder = folder(test);
     fs::write(folder.join("plan.mdle"), "{ P (bumper) (Atom (wait 1s) (go 20 0)) }\n").unwrap();
@@ -38,7 +37,7 @@ fn machines_without_a_library_are_refused() {
             )
         );
     }
-    // rustup has no library for it.
+    // rustup has no standard library for this machine.
     assert_eq!(
         machine("aarch64_be-unknown-linux-gnu"),
         "error: Rust's standard library for `aarch64_be-unknown-linux-gnu` is not installed, and rustup is not here or does \

@@ -1,5 +1,5 @@
-//! Tests messages about mistakes of which the intended text is known. A message must propose an edit that leads to this
-//! text, and no edit that leads to a valid plan with another meaning.
+//! Tests messages about mistakes with a known intended text. A message must propose an edit that leads to this text,
+//! and no edit that leads to a valid plan with another meaning.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;

@@ -1,4 +1,4 @@
-//! Tests that `mdlec` ends by itself with a message on any bytes, through the real binary, because a stack overflow
+//! Tests that `mdlec` ends by itself with a message on any bytes. This needs the real binary, because a stack overflow
 //! cannot be caught.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -74,7 +74,7 @@ fn words(chance: &mut Chance) -> Vec<u8> {
     (0..count).map(|_| chance.pick(&WORDS)).collect::<Vec<_>>().join(" ").into_bytes()
 }
 
-/// Returns a good file in which a few bytes are changed, and whose end may be cut off or repeated.
+/// Returns a valid file with a few changed bytes, whose end may be cut off or repeated.
 fn spoilt(good: &[u8], chance: &mut Chance) -> Vec<u8> {
     let mut bytes = good.to_vec();
     for _ in 0..1 + chance.below(4) {
@@ -129,7 +129,7 @@ fn a_spoilt_plan_is_a_plan_or_an_error() {
         let good = &plans[chance.below(plans.len())].text;
         fs::write(folder.join("plan.mdle"), spoilt(good.as_bytes(), &mut chance)).unwrap();
         assert_ends(&folder, &["check", "plan.mdle"], &[0, 1], seed);
-        // Several plans in a file are wrong usage.
+        // A file with several plans is a usage error.
         assert_ends(&folder, &["trace", "plan.mdle", "--script", "script"], &[0, 1, 2], seed);
         assert_ends(&folder, &["plan.mdle", "--target", "sim", "--emit", "rust"], &[0, 1, 2], seed);
     }
@@ -144,7 +144,7 @@ fn a_random_script_is_wrong_usage() {
         let mut chance = Chance::new(seed);
         for script in [bytes(&mut chance), words(&mut chance), spoilt(good, &mut chance)] {
             fs::write(folder.join("script"), script).unwrap();
-            // No line at all is a script that ends at once; bytes that are not text have a code, as in plans.
+            // A script without lines ends at once; a script that is not text is an error with a code, as in plans.
             assert_ends(&folder, &["trace", "plan.mdle", "--script", "script"], &[0, 1, 2], seed);
         }
     }

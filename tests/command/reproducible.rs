@@ -1,5 +1,5 @@
-//! Tests that executables of equal texts are identical byte for byte, regardless of the folder of their plan and of
-//! earlier builds.
+//! Tests that executables of equal texts are identical byte for byte, regardless of the plan's folder and of earlier
+//! builds.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use mdle_tests::executable::{cache, folder, run_mdlec};
 
-/// Builds a plan with this name that uses another plan, and returns the executable. Different `milliseconds` give
-/// different texts.
+/// Builds a plan that uses another plan, and returns the executable. `name` is the name of the plan; different
+/// `milliseconds` give different texts.
 fn build(folder: &Path, name: &str, milliseconds: u32) -> Vec<u8> {
     let plan = format!("use \"legs.mdle\"\n{{ Rest (wait {milliseconds}ms) Legs }}\n");
     fs::create_dir_all(folder).unwrap();
@@ -19,7 +19,7 @@ fn build(folder: &Path, name: &str, milliseconds: u32) -> Vec<u8> {
     fs::read(folder.join(name)).unwrap()
 }
 
-/// Returns the paths in the cache, below `folder`, that belong to plans with this name.
+/// Returns the paths below `folder`, in the cache, that belong to plans with this name.
 fn stored(folder: &Path, name: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).into_iter().flatten() {

@@ -14,10 +14,10 @@ const PLAN: &str = "{ P (bumper)\n  (Atom (wait 1s) (go 20 0))\n}\n";
 /// A third-party robot without a bumper.
 const CART: &str = "target cart : crate cart, period 100ms;\ncapability diff_drive, odometry;\nuse atoms;\n";
 
-/// A world whose start differs from that of all other worlds.
+/// A world that differs from all other worlds in its start.
 const WORLD: &str = "start = { x = 7.25, y = 1.5, heading = 90 }\n";
 
-/// Returns a folder that contains the folder `home` with a plan, a robot, a world and these settings.
+/// Returns a folder with the folder `home`, which contains a plan, a robot, a world and these settings.
 fn home(test: &str, settings: &str) -> PathBuf {
     let folder = folder(test);
     for (name, text) in [("plan.mdle", PLAN), ("cart/alphabet.mdle", CART), ("rooms/own.toml", WORLD)] {
@@ -43,7 +43,7 @@ fn assert_success(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Returns the line about the first turn of a run in its trail, which contains the pose.
+/// Returns the line about the first turn of a run in the run's trail, which contains the pose.
 fn first_pose(folder: &Path) -> String {
     let trail = fs::read_to_string(folder.join("trail.csv")).unwrap();
     trail.lines().nth(1).unwrap().to_owned()
@@ -150,7 +150,7 @@ fn wrong_options_are_found_before_a_build() {
         }
         assert!(!folder.join("plan").exists(), "nothing is built");
     }
-    // Options of a robot of one's own are known to its executable alone.
+    // The options of a user's own robot are known to its executable only.
     fs::write(folder.join("home/mdle.toml"), "target = \"cart\"\n[options]\nsped = \"max\"\n").unwrap();
     assert!(message(&folder, &["check", "home/plan.mdle"]).contains("error[E0401]"));
 }
@@ -161,10 +161,11 @@ fn a_check_names_a_world_that_is_none() {
     let refusal = "error: home/mdle.toml:2: there is no such world or file: `hal`; the worlds are";
     let unknown = message(&folder, &["check", "home/plan.mdle"]);
     assert!(unknown.contains(&format!("{refusal} hall, maze, office, room\nexit status 2\n")), "{unknown}");
-    // Nothing is built for it.
+    // The error is reported before anything is built.
     assert!(message(&folder, &["run", "home/plan.mdle"]).contains(refusal));
     assert!(!folder.join("plan").exists());
-    // The command line has another robot, or the folder a file of that name.
+    // The setting is not an error if the command line names another robot, or if the folder contains a file with this
+    // name.
     assert!(message(&folder, &["check", "home/plan.mdle", "--target", "scout"]).ends_with("exit status 0\n"));
     fs::write(folder.join("home/hal"), WORLD).unwrap();
     assert!(message(&folder, &["check", "home/plan.mdle"]).ends_with("exit status 0\n"));

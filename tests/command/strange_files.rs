@@ -1,4 +1,4 @@
-//! Tests that special files and endless files are refused at once, wherever a command or an executable reads a file.
+//! Tests that special files and endless files are refused at once wherever a command or an executable reads a file.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use mdle_tests::executable::{self, command, folder, run_mdlec};
 
-/// Time after which a command counts as hanging, far longer than a refusal takes.
+/// Time after which a command counts as hanging; a refusal takes far less.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Runs a command, and panics if it hangs.
@@ -28,12 +28,12 @@ fn ended(mut command: Command) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// Returns a folder that contains files of every refused kind in the folder `strange`, and a good plan, script and
+/// Returns a folder with files of every refused kind in its folder `strange`, and with a valid plan, script and
 /// machine.
 fn prepared(test: &str) -> PathBuf {
     let folder = folder(test);
     let strange = folder.join("strange");
-    // As settings, and as plans: a TOML file in the place of a plan is a scenario.
+    // The files are used as settings and as plans. A TOML file in place of a plan is a scenario.
     for ending in ["toml", "mdle"] {
         let named = |name: &str| strange.join(name).with_extension(ending);
         fs::create_dir_all(named("folder")).unwrap();
@@ -56,7 +56,7 @@ fn assert_refused(output: &Output, kind: &str) {
         "folder" => "is a folder",
         "zero" => "is a device",
         "pipe" => "is a pipe",
-        // Not everybody may open it.
+        // Some users may not open this file, so the message differs.
         "kmsg" => "",
         _ => "is larger than",
     };
@@ -140,7 +140,7 @@ fn executables_read_regular_files_and_configurations_from_pipes() {
             command.args([option, &format!("strange/{kind}")]).current_dir(&folder);
             let output = ended(command);
             if (option, kind) == ("--config", "pipe.toml") {
-                // A configuration may come from a pipe, but nobody writes into this one.
+                // A configuration may come from a pipe, but no process writes to this one.
                 let error = String::from_utf8_lossy(&output.stderr);
                 assert_eq!(error, "error: strange/pipe.toml: nothing has been written to this pipe\n");
                 assert_eq!(output.status.code(), Some(2));

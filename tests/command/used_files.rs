@@ -35,7 +35,7 @@ fn files_in_folders_make_one_plan() {
     let plan =
         "{ Main\n  { Leg\n    ExecPlan 2 {\n      { Corner\n        (Atom (null) turn 90)\n      }\n    }\n  }\n}\n";
     assert_eq!(message(&folder, &["main.mdle", "--emit", "plan"]), format!("{plan}exit status 0\n"));
-    // From another folder it is the same plan, and any of the plans can be asked for.
+    // From another folder the plan is the same, and each of its plans can be selected.
     let above = folder.parent().unwrap();
     let main = format!("{}/main.mdle", folder.file_name().unwrap().to_str().unwrap());
     assert_eq!(message(above, &[&main, "--emit", "plan"]), format!("{plan}exit status 0\n"));

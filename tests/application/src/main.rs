@@ -1,4 +1,4 @@
-//! An application that goes round: its plan is part of it.
+//! An application with a plan that is compiled into it.
 
 use std::process::ExitCode;
 

@@ -10,9 +10,8 @@ use crate::sensed::Sensed;
 use crate::system::{Printed, bytes};
 use crate::{Input, Output};
 
-/// Runs `plan` until it is over or no output is left. For each turn, prints the line of a trace, and a line with `u`
-/// and the input as two integers, in mm/s and mrad/s. Returns the exit status: 0 if everything could be printed,
-/// otherwise 1.
+/// Runs `plan` until it is over or standard input ends. For each turn, prints a line of the trace, and a line with `u`
+/// and the input as two integers, in mm/s and mrad/s. Returns the exit status: 0 if everything was printed, 1 if not.
 pub fn run(plan: impl Plan<Output = Output, Input = Input>) -> c_int {
     match turns(plan) {
         Ok(()) => 0,

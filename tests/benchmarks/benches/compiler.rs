@@ -1,6 +1,6 @@
-//! Measures the time and the memory that `mdlec` takes as a process for long plans.
+//! Measures the time and the peak memory of `mdlec`, as a process, for long plans.
 //!
-//! The result is that of the fastest run. User time is measured by the system, in steps of 10 ms.
+//! The fastest run counts. User time is measured by the system, in steps of 10 ms.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::unwrap_used, reason = "a benchmark fails by panicking")]
 
@@ -22,7 +22,7 @@ struct Cost {
     wall: Duration,
     /// Processor time in user mode, in seconds.
     user: f64,
-    /// Maximum memory of the process, in kB.
+    /// Peak memory of the process, in kB.
     memory: u64,
 }
 
@@ -67,7 +67,7 @@ fn small_plans(bytes: usize) -> String {
     plans
 }
 
-/// Returns a plan that is a sequence of atoms, whose conditions differ if `differ` is `true`.
+/// Returns a plan that is a sequence of atoms. If `differ` is `true`, all conditions differ.
 fn written_out(atoms: usize, differ: bool) -> String {
     let mut plan = String::from("{ P (bumper)\n");
     for atom in 0..atoms {
@@ -106,15 +106,14 @@ fn run(mdlec: &Path, file: &Path, arguments: &[&str]) -> Cost {
     Cost { wall: start.elapsed(), user: used_by_children() - used, memory }
 }
 
-/// Returns the maximum memory that a running process has used so far, in kB; `None` if it has ended.
+/// Returns the peak memory of a process in kB, or `None` if the process has ended.
 fn most_memory(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     line.trim().strip_suffix(" kB")?.parse().ok()
 }
 
-/// Returns the user time of all children so far, in seconds. It is field 16 of `/proc/self/stat`, in hundredths of a
-/// second.
+/// Returns the user time of all children so far, in seconds: field 16 of `/proc/self/stat`, in hundredths of a second.
 fn used_by_children() -> f64 {
     let stat = fs::read_to_string("/proc/self/stat").expect("Linux");
     let after_name = stat.rsplit(')').next().expect("a name in brackets");

@@ -1,6 +1,7 @@
-//! Measures crowds of Scouts, whose sonars ping one after another and whose plan drives by `goAvoid` or by `go`. Prints
-//! the processor time per robot and simulated second, the speed relative to real time, and the memory, beside the
-//! processor time of the sonar rays alone. Also checks that runs with different numbers of threads have equal results.
+//! Measures crowds of Scouts whose sonars ping one after another and whose plan drives by `goAvoid` or by `go`. Prints
+//! the processor time per robot and simulated second, the speed relative to real time, the peak memory and, for
+//! comparison, the processor time of the sonar rays alone. Also checks that the results do not depend on the number of
+//! threads.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -16,9 +17,9 @@ use mdle_tests::repository::root;
 
 /// Numbers of robots, each with the duration of the run in simulated seconds.
 const CROWDS: [(u32, u32); 5] = [(1, 8_000), (10, 1_600), (100, 200), (1_000, 40), (10_000, 10)];
-/// Numbers of threads of the runs that must be equal.
+/// Numbers of threads; runs with each of them must have equal results.
 const THREADS: [u32; 3] = [1, 2, 4];
-/// Number of robots in the runs that must be equal, and the duration of these runs in simulated seconds.
+/// Number of robots and duration, in simulated seconds, of the runs that must have equal results.
 const COMPARED: (u32, u32) = (1_000, 5);
 /// Number of rays of a Scout per second: seven for each ping, and one ping every 60 ms.
 const RAYS: f64 = 7.0 / 0.06;
@@ -78,11 +79,11 @@ fn compare(mdle: &Path) {
 
 /// Measurements of a run.
 struct Run {
-    /// Processor time in seconds, the sum of all cores.
+    /// Processor time of all cores together, in seconds.
     processor: f64,
     /// Wall-clock time in seconds.
     wall: f64,
-    /// Maximum memory, in megabytes.
+    /// Peak memory, in megabytes.
     memory: f64,
 }
 
@@ -123,24 +124,24 @@ fn run(mdle: &Path, law: &str, robots: u32, seconds: u32) -> Run {
     Run { processor, wall: begun.elapsed().as_secs_f64(), memory }
 }
 
-/// Returns the processor time that a process has taken, in seconds; `None` once it has ended.
+/// Returns the processor time of a process in seconds, or `None` if the process has ended.
 fn seconds_of(process: u32) -> Option<f64> {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let (_, fields) = stat.rsplit_once(") ")?;
     let ticks = |number: usize| fields.split(' ').nth(number)?.parse::<f64>().ok();
-    // In hundredths, of the program and of the system for it.
+    // User time and system time of the process, in hundredths of a second.
     Some((ticks(11)? + ticks(12)?) / 100.0).filter(|seconds| *seconds > 0.0)
 }
 
-/// Returns the maximum memory of a process so far, in megabytes; `None` once it has ended.
+/// Returns the peak memory of a process in megabytes, or `None` if the process has ended.
 fn memory_of(process: u32) -> Option<f64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().split(' ').next()?.parse::<f64>().ok()? / 1000.0)
 }
 
-/// Returns the processor time, in seconds, of all rays of a robot in a second, in the hall of a crowd without other
-/// robots.
+/// Returns the processor time that all rays of a robot take per second, in seconds, in the hall of a crowd without the
+/// other robots.
 fn rays(robots: u32) -> f64 {
     let rows = f64::from(robots).sqrt().ceil();
     let side = rows * SPACING;
@@ -149,7 +150,7 @@ fn rays(robots: u32) -> f64 {
     let own = std::process::id();
     let begun = seconds_of(own).unwrap_or_default();
     let (mut number, mut heard) = (0_u64, 0.0);
-    // Long enough for a clock of hundredths.
+    // A second is long enough for a clock with a resolution of a hundredth of a second.
     while seconds_of(own).unwrap_or_default() - begun < 1.0 {
         for _ in 0..100_000 {
             let robot = (number % u64::from(robots)) as f64;

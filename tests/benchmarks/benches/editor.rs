@@ -1,8 +1,8 @@
-//! Measures the answers of the language server, beside the same work by the compiler alone.
+//! Measures the response times of the language server and, for comparison, of the compiler alone for the same work.
 //!
 //! A client in the same process types a digit and waits for the diagnostics, requests a completion and a hover, and
-//! makes ten thousand edits, between which the memory of the process is measured. The times include the 5 ms for which
-//! the server waits for more keystrokes before it checks.
+//! makes ten thousand edits, between which the memory of the process is measured. The times include the 5 ms that the
+//! server waits for more keystrokes before it checks the document.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::panic, reason = "this is what a benchmark is for")]
 
 use std::fs;
@@ -40,14 +40,14 @@ fn plan(atoms: usize) -> String {
     format!("{{ P (wait 600min)\n{}}}\n", (0..atoms / 10).map(behavior).collect::<String>())
 }
 
-/// Measures and prints the times of the answers about a plan of `atoms` atoms.
+/// Measures and prints the response times for a plan of `atoms` atoms.
 fn answers(atoms: usize) {
     let text = plan(atoms);
     let robot = alphabet(Some("sim"));
     let check = || drop(black_box(check_with(SourceId(0), black_box(&text), &robot, &mut NoFiles)));
     print(atoms, "mdlec check, in memory", (0..TIMES / 10).map(|_| time(check)).collect());
     let mut client = Client::new(&text);
-    // The law of the fourth atom of a behavior in the middle of the plan: a behavior has twelve lines.
+    // Position of the law of a behavior's fourth atom, in the middle of the plan. A behavior has twelve lines.
     let (line, character) = (text.lines().count() as u32 / 24 * 12 + 5, 32);
     let at = json!({ "textDocument": { "uri": URI }, "position": { "line": line, "character": character } });
     print(atoms, "diagnostics", (0..TIMES).map(|_| time(|| client.type_digit(line))).collect());
@@ -139,12 +139,12 @@ impl Client {
         }
     }
 
-    /// Types a digit into the time of the atom in a line or, if the digit is there already, deletes it. Waits for the
+    /// Types a digit into the time of the atom in a line, or deletes the digit if it is already there. Waits for the
     /// diagnostics.
     fn type_digit(&mut self, line: u32) {
         self.version += 1;
         let at = |character: u32| json!({ "line": line, "character": character });
-        // Before the time, after `wait `.
+        // The digit is inserted before the time, after `wait `.
         let (end, text) = if self.has_digit { (27, "") } else { (26, "1") };
         let change = json!({ "range": { "start": at(26), "end": at(end) }, "text": text });
         self.has_digit = !self.has_digit;

@@ -1,8 +1,8 @@
 //! Measures the parser, from text to tree, in megabytes per second.
 //!
 //! Two kinds of runs alternate, and the fastest run of each kind counts. `used` puts each tree into an arena that was
-//! used before, which measures the parser alone. `new` puts each tree into a new arena, which includes the time that
-//! the system takes to provide memory. The time in which trees are dropped is not measured.
+//! used before, and thus measures the parser alone. `new` puts each tree into a new arena, and thus includes the time
+//! in which the system provides memory. The time in which trees are dropped is not measured.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 
 use std::hint::black_box;
@@ -12,7 +12,7 @@ use mdle_benchmarks::front_end::{one_megabyte, plans, ten_megabytes};
 use mdle_compiler::diagnostic::SourceId;
 use mdle_compiler::syntax::{Arena, arena_for, parse};
 
-/// Number of bytes that are parsed in all runs of a kind.
+/// Number of bytes that the runs of a kind parse in total.
 const BYTES: usize = 200_000_000;
 
 fn main() {
@@ -20,7 +20,7 @@ fn main() {
     for (name, texts) in [plans(), one_megabyte(), ten_megabytes()] {
         assert!(texts.iter().all(|text| reads(text, &Arena::new())), "{name}");
         let bytes: usize = texts.iter().map(String::len).sum();
-        // A run is long enough for the clock.
+        // Short texts are parsed several times per run, because the clock is not precise enough for a shorter run.
         let (runs, repeats) = (BYTES / bytes.max(100_000), (100_000 / bytes).max(1));
         let [used, new] = fastest(&texts, runs, repeats);
         let speed = |time: Duration| (bytes * repeats) as f64 / time.as_secs_f64() / 1e6;

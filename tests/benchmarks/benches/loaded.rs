@@ -1,5 +1,5 @@
-//! Compares `mdle run`, which loads a plan, with the plan's executable: the time of runs at maximum speed in the
-//! simulator, and the number of instructions, which Callgrind counts. Also measures the time from a text to its first
+//! Compares `mdle run`, which loads a plan, with the plan's executable: the duration of runs at maximum speed in the
+//! simulator, and the number of instructions, counted by Callgrind. Also measures the time from a text to its first
 //! turn. Both programs are built with `--release`, which takes minutes the first time.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
@@ -17,14 +17,14 @@ use mdle_tests::repository::root;
 struct Workload {
     name: &'static str,
     text: &'static str,
-    /// Name of the world. `timed` and `counted` are the time limits of a run whose duration is measured and of a run
+    /// Name of the world. `timed` is the time limit of a run whose duration is measured, and `counted` is that of a run
     /// whose instructions are counted.
     world: &'static str,
     timed: &'static str,
     counted: &'static str,
 }
 
-/// The plans. Two of them continue until the time limit of the run.
+/// The plans. Two of them run until the time limit.
 const WORKLOADS: [Workload; 3] = [
     Workload {
         name: "one law",
@@ -52,7 +52,7 @@ const WORKLOADS: [Workload; 3] = [
 const RUNS: usize = 7;
 /// Minimum number of timed runs of each program, however long they take.
 const FEWEST: usize = 3;
-/// Time after which no further runs of a plan begin.
+/// Time after which no further run of a plan is started.
 const LONGEST: Duration = Duration::from_secs(20);
 
 fn main() {
@@ -104,8 +104,8 @@ fn built(binary: &str) -> PathBuf {
     Path::new(&target()).join("release").join(binary)
 }
 
-/// Runs two programs alternately, each with the time limit `timeout`. Returns the duration of the fastest run of each,
-/// in seconds.
+/// Runs two programs alternately, each with the time limit `timeout`. Returns the duration of each program's fastest
+/// run, in seconds.
 fn seconds(programs: &[Vec<PathBuf>], timeout: &str) -> [f64; 2] {
     let mut times = [Duration::MAX; 2];
     let begun = Instant::now();
@@ -142,7 +142,7 @@ fn instructions(words: &[PathBuf], timeout: &str) -> f64 {
 fn ended(mut command: Command) -> String {
     let output = command.stdout(Stdio::null()).stderr(Stdio::piped()).current_dir(root()).output().expect("a run");
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    // A plan is over, or its time is.
+    // The run ends when the plan is over or at its time limit.
     assert!(matches!(output.status.code(), Some(0 | TIMED_OUT)), "{:?}: {errors}", output.status);
     errors
 }

@@ -1,9 +1,9 @@
-//! Measures the turns of eight modules at 1 kHz on two workers, each busy for 2, 10 or 50 µs, beside a bare loop of
-//! `clock_nanosleep` with the same privileges: lateness, missed turns, the duration of a turn, and the duration of a
-//! turn break.
+//! Measures the turns of eight modules at 1 kHz on two workers, each busy for 2, 10 or 50 µs: lateness, missed turns,
+//! the duration of a turn, and the duration of a turn break. The baseline is a bare loop of `clock_nanosleep` with the
+//! same privileges.
 //!
-//! Each measurement runs in a separate process of this program, which a role in the environment selects. The processes
-//! alternate, and the results include all rounds.
+//! Each measurement runs in a separate process of this program, with its role in an environment variable. The processes
+//! alternate, and the results cover all rounds.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -28,7 +28,7 @@ const TURNS: usize = 5000;
 const ROUNDS: usize = 4;
 /// Number of modules.
 const MODULES: usize = 8;
-/// Work of each module in a turn, in microseconds; each number is measured separately.
+/// Work of each module in a turn, in microseconds. Each value is measured separately.
 const WORK: [u64; 3] = [2, 10, 50];
 /// Environment variable with the role of a process: the work of its modules in microseconds, or `bare`.
 const ROLE: &str = "MDLE_MODULES_ROLE";
@@ -70,7 +70,7 @@ fn compare() {
     }
 }
 
-/// Measurements of a role, in nanoseconds, except `missed`, which is a number of turns.
+/// Measurements of a role in nanoseconds, except `missed`, the number of missed turns.
 #[derive(Default)]
 struct Round {
     late: Vec<i64>,
@@ -95,7 +95,7 @@ impl Round {
         assert_eq!(begins.len(), TURNS, "{role}");
         let period = PERIOD.as_nanos() as i64;
         self.late.extend(begins.iter().skip(1).map(|begun| late(begun - begins[0], PERIOD)));
-        // The bare loop catches up with several turns in one period.
+        // The bare loop may begin several turns in one period to catch up.
         let mut periods: Vec<_> = begins.iter().map(|begun| (begun - begins[0] + period / 10) / period).collect();
         periods.dedup();
         self.missed += periods[periods.len() - 1] + 1 - periods.len() as i64;
@@ -104,7 +104,7 @@ impl Round {
     }
 }
 
-/// Returns the median, the 99th percentile and the maximum, in microseconds; zeros if there are no numbers.
+/// Returns the median, the 99th percentile and the maximum, in microseconds, or zeros if there are no measurements.
 fn quantiles(nanos: &mut [i64]) -> [f64; 3] {
     nanos.sort_unstable();
     let at = |place: usize| nanos.get(place).map_or(0.0, |nanos| *nanos as f64 / 1e3);
@@ -151,8 +151,7 @@ impl Module<Nothing> for Busy {
     }
 }
 
-/// Pilot of a run that executes eight modules, and records the durations of their turns and turn breaks, in
-/// nanoseconds.
+/// Pilot of a run that executes eight modules and records the durations of their turns and turn breaks, in nanoseconds.
 struct Eight {
     modules: Modules<Nothing>,
     turns: Vec<u128>,

@@ -1,8 +1,7 @@
-//! Measures the record of an hour of a robot at ten turns a second, with sixteen sonars and the channels of viewers:
-//! the size of the record, the time that a turn costs the control thread, and the speed of `mdle replay` and `mdle
-//! why`.
+//! Measures the record of an hour of a robot at ten turns per second, with sixteen sonars and the channels of viewers:
+//! the size of the record, the time per turn in the control thread, and the speed of `mdle replay` and `mdle why`.
 //!
-//! `mdle` runs in a separate process of this program, which the environment selects.
+//! `mdle` runs in a separate process of this program, which an environment variable selects.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -51,12 +50,12 @@ fn main() -> ExitCode {
     ExitCode::SUCCESS
 }
 
-/// Returns the shortest time of [`ROUNDS`] rounds.
+/// Returns the duration of the fastest of [`ROUNDS`] rounds.
 fn fastest(round: impl Fn() -> Duration) -> Duration {
     (0..ROUNDS).map(|_| round()).min().unwrap_or_default()
 }
 
-/// Returns the time that a run of `mdle` with these arguments takes.
+/// Returns the duration of a run of `mdle` with these arguments.
 fn mdle(folder: &Path, arguments: &str) -> Duration {
     let program = env::current_exe().expect("this program");
     let mut command = Command::new(program);
@@ -68,7 +67,7 @@ fn mdle(folder: &Path, arguments: &str) -> Duration {
     passed
 }
 
-/// Returns the average time in which the control thread encodes a turn of the record.
+/// Returns the average time that the control thread takes to encode a turn of the record.
 fn encoding(record: &Path) -> Duration {
     let file = File::open(record).expect("the record");
     let (_, records) = Records::open(BufReader::new(file)).expect("a record");

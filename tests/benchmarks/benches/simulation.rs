@@ -1,4 +1,4 @@
-//! Measures the speed of the simulator: of rays, beside a bare traversal of cells, and of a whole robot.
+//! Measures the speed of the simulator: of rays, compared with a bare traversal of grid cells, and of a whole robot.
 #![allow(clippy::expect_used, reason = "a benchmark of a world that is not there fails by panicking")]
 
 use std::hint::black_box;
@@ -18,8 +18,8 @@ fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Returns a world with walls of 0.5 to 2 m that are scattered over a square with the given side, and random rays in
-/// it.
+/// Returns a world of walls, 0.5 to 2 m long and scattered over a square with the side `side`, and random rays in this
+/// world.
 fn scattered(walls: usize, side: f64) -> (World, Vec<(Place, Place)>) {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut text = String::new();
@@ -38,7 +38,8 @@ fn scattered(walls: usize, side: f64) -> (World, Vec<(Place, Place)>) {
     (World::parse("scattered", &text).expect("a good world"), rays)
 }
 
-/// Grid for the minimum work of any search in a grid: a ray steps from cell to cell until it reaches an occupied cell.
+/// A grid that measures the minimum work of any search in a grid: a ray steps from cell to cell until it reaches an
+/// occupied cell.
 struct Cells {
     taken: Vec<bool>,
     count: usize,
@@ -110,7 +111,8 @@ fn rays(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Measures a second, which is ten turns, of a robot that turns on the spot in hallway A of the office.
+/// Measures a second of simulated time, which is ten turns, of a robot that turns on the spot in hallway A of the
+/// office.
 fn robot(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("robot, one second");
     let world = World::office().expect("our own floor");
@@ -131,7 +133,7 @@ fn robot(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Measures the start, from the text of a world to a robot in this world.
+/// Measures the start: from the text of a world to a robot in this world.
 fn start(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("start");
     group.sample_size(10);

@@ -1,6 +1,6 @@
-//! Measures plans of 10,000 atoms that are compiled and swapped in four times a second, in an engine at 1 kHz on two
-//! workers: the duration of a turn in which a new plan begins, beside that of all other turns, and the time from a
-//! request to the first turn of its plan.
+//! Measures the swap of plans of 10,000 atoms, which are compiled and swapped in four times per second in an engine at
+//! 1 kHz on two workers: the duration of a turn in which a new plan begins, compared with all other turns, and the time
+//! from a request to the first turn of its plan.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -22,9 +22,9 @@ use rustix::time::{Timespec, clock_gettime};
 const PERIOD: Duration = Duration::from_millis(1);
 /// Number of atoms of a plan.
 const ATOMS: usize = 10_000;
-/// Number of turns between two requests.
+/// Number of turns from one request to the next.
 const EACH: u64 = 250;
-/// Number of plans that the benchmark requests to swap in.
+/// Number of requests to swap in a plan.
 const SWAPS: u64 = 80;
 
 fn main() {
@@ -38,7 +38,7 @@ fn main() {
     let mut engine = Engine::<Alphabet>::new(first, &Library::new(), &terms).expect("an engine");
     engine.plans_mut().compile_with(Box::new(compiled)).expect("a thread");
     engine.plans_mut().set_trial(Nanos(50_000_000));
-    // Texts are made before, as they come from another thread in a session.
+    // Texts are made in advance, because they come from another thread in a session.
     let texts: Vec<_> = (0..SWAPS).map(text).collect();
     claim_for_worker();
     let [mut swaps, mut others, mut waits] = turns(&mut engine, texts);
@@ -50,7 +50,7 @@ fn main() {
     }
     let [middle, high, most] = wait.map(|nanos| nanos / 1e6);
     println!("{:<36}{:>8}{middle:>10.1}{high:>10.1}{most:>10.1}", "text to first turn, ms", waits.len());
-    // A request that is not compiled when the next one comes is superseded.
+    // A request that is not yet compiled when the next request arrives is superseded.
     println!("{:<36}{:>8}", "superseded requests", SWAPS - swaps.len() as u64);
     println!("p99 of a turn with a swap: {:.2} times that of any other", swap[1] / other[1]);
 }
@@ -65,7 +65,7 @@ fn turns(engine: &mut Engine<Alphabet>, texts: Vec<String>) -> [Vec<u64>; 3] {
     let (mut transitions, mut texts) = (Transitions::default(), texts.into_iter());
     let mut asked = Vec::with_capacity(texts.len());
     let mut deadline = clock_gettime(ClockId::Monotonic);
-    // After the last request its plan takes over, and its trial ends.
+    // After the last request, the turns continue until its plan takes over and its trial ends.
     for number in 0..(SWAPS + 2) * EACH {
         let begun = Instant::now();
         let t = Nanos(number * PERIOD.as_nanos() as u64);
@@ -101,7 +101,7 @@ fn turns(engine: &mut Engine<Alphabet>, texts: Vec<String>) -> [Vec<u64>; 3] {
     [swaps, others, waits]
 }
 
-/// Returns the text of a plan of [`ATOMS`] atoms; each `number` gives a different plan.
+/// Returns the text of a plan of [`ATOMS`] atoms, which differs for each `number`.
 fn text(number: u64) -> String {
     let mut text = String::from("{ Swapped (bumper)\n");
     for atom in 0..ATOMS {
@@ -129,7 +129,7 @@ fn loaded(text: &str) -> Result<Arc<Loaded<Alphabet>>, String> {
     load::load(&plan.machine, &sources, &alphabet).map(Arc::new).map_err(|error| error.to_string())
 }
 
-/// Returns the median, the 99th percentile and the maximum; zeros if there are no numbers.
+/// Returns the median, the 99th percentile and the maximum, or zeros if there are no measurements.
 fn quantiles(nanos: &mut [u64]) -> [f64; 3] {
     nanos.sort_unstable();
     let at = |place: usize| nanos.get(place).map_or(0.0, |nanos| *nanos as f64);

@@ -16,11 +16,11 @@ use rustix::thread::sched_getcpu;
 const PERIOD: Duration = Duration::from_millis(2);
 /// Number of turns of the run.
 const TURNS: u64 = 2000;
-/// Modules, each with its name, its work in a turn in microseconds, and its priority. The plan is a module, and runs
+/// Modules, each with its name, its work per turn in microseconds, and its priority. The plan is a module, and runs
 /// first.
 const MODULES: [(&str, u64, i32); 5] =
     [("plan", 180, i32::MAX), ("ears", 90, 0), ("heading", 120, 0), ("map", 400, 0), ("recorder", 200, 0)];
-/// Name of the part between two turns, which the control thread runs.
+/// Name of the turn break between two turns, which the control thread runs.
 const BREAK: &str = "break";
 
 /// Part of a turn that ran on a core.
@@ -55,7 +55,7 @@ impl Module<()> for Busy {
 
 fn main() {
     let parts = run();
-    // Of two turns after another, those that take the median time, on two cores.
+    // Of all pairs of consecutive turns on two cores, takes the pair with the median working time.
     let pairs = (TURNS / 2..TURNS - 2).map(|turn| {
         let pair: Vec<_> = parts.iter().filter(|part| part.turn == turn || part.turn == turn + 1).cloned().collect();
         let busy: Duration = pair.iter().map(|part| part.ended - part.begun).sum();
@@ -102,11 +102,11 @@ fn run() -> Vec<Part> {
     parts.try_iter().collect()
 }
 
-/// Returns the picture of two turns, given their parts, as SVG.
+/// Returns an SVG picture of two turns, given their parts.
 fn drawn(parts: &[Part]) -> String {
     let zero = parts.iter().map(|part| part.begun).min().expect("a part");
     let micros = |at: Instant| (at - zero).as_secs_f64() * 1e6;
-    // The time between the turns is cut out.
+    // The time between the two turns is cut out.
     let first = parts.iter().filter(|part| part.turn == parts[0].turn);
     let end = first.clone().map(|part| micros(part.ended)).fold(0.0, f64::max);
     let second = parts.iter().filter(|part| part.turn != parts[0].turn);

@@ -1,7 +1,8 @@
-//! Measures the lateness of turns on a real clock, beside a bare loop of `clock_nanosleep` with the same privileges.
+//! Measures the lateness of turns on a real clock, with a bare loop of `clock_nanosleep` with the same privileges as
+//! the baseline.
 //!
-//! Both run in separate processes of this program, which a role in the environment selects. The processes alternate,
-//! and the results include all rounds.
+//! Both run in separate processes of this program, with their role in an environment variable. The processes alternate,
+//! and the results cover all rounds.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -59,6 +60,6 @@ fn lateness(role: &str) -> Vec<i64> {
     let begins: Vec<i64> = begins.lines().filter_map(|line| line.strip_prefix("begun ")?.parse().ok()).collect();
     assert_eq!(begins.len(), TURNS, "{role}");
     let first = begins.first().copied().unwrap_or_default();
-    // A turn that is skipped makes those behind it turns of later deadlines, and not late.
+    // After a skipped turn, the following turns belong to later deadlines and are not late.
     begins.iter().skip(1).map(|begun| late(begun - first, PERIOD)).collect()
 }

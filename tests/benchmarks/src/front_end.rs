@@ -1,4 +1,4 @@
-//! Workloads of the front end: the plans of the repository, and generated plans of one and of ten megabytes.
+//! Workloads of the front end: the plans of the repository, and generated plans of one megabyte and of ten megabytes.
 
 use mdle_tests::repository::files;
 
@@ -20,8 +20,8 @@ pub fn one_megabyte() -> Workload {
     ("1 MB", vec![plan_text(1, 1_000_000)])
 }
 
-/// Returns ten megabytes of plans in one file. A parser whose time is linear reads them as fast, in bytes per second,
-/// as one megabyte.
+/// Returns ten megabytes of plans in one file. A parser with linear run time is as fast on them, in bytes per second,
+/// as on one megabyte.
 #[must_use]
 pub fn ten_megabytes() -> Workload {
     ("10 MB", vec![plan_text(10, 10_000_000)])

@@ -1,5 +1,4 @@
-//! Workloads of the benchmarks, and the code with which they are compared. `benches/` contains one file for each
-//! subject.
+//! Workloads of the benchmarks, and code that compares results. `benches/` contains one file for each subject.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 

@@ -117,7 +117,8 @@ impl Writer {
             self.line(&format!("{label}{{ {name}{number} {params}{condition}"));
         } else {
             self.line(&format!("{label}{{ {name}{number} {params}"));
-            // Not a parenthesis with a name behind it, which would be taken for the condition that is left out.
+            // The first element is an atom: without a condition, a parenthesis after the name would be parsed as the
+            // condition.
             self.depth += 1;
             self.atom();
             self.depth -= 1;

@@ -1,4 +1,4 @@
-//! Writes the code that the benchmarks compare: the Rust that mdlec emits for T(N), and the same machine in the form of
+//! Writes the code that the benchmarks compare: the Rust that mdlec emits for T(N), and the same machine written for
 //! each peer.
 
 #[path = "build/peers.rs"]

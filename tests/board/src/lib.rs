@@ -1,7 +1,7 @@
 //! A robot whose controller is a microcontroller, without an operating system and without an allocator.
 //!
-//! The test runs the lab tour twice. `desk` drives the simulated robot, and records what it senses; `board` runs on the
-//! microcontroller, reads what was recorded, and must print the same text.
+//! The test runs the lab tour twice. `desk` drives the simulated robot and records what it senses; `board` runs on the
+//! microcontroller, reads this record, and must print the same text.
 #![no_std]
 
 pub mod alphabet;

@@ -34,11 +34,11 @@ impl Numbers<'_> {
     }
 }
 
-/// Number of bytes of the record of a body.
+/// Size of the record of a body, in bytes.
 pub const BEGIN: usize = 56;
-/// Number of bytes of the record of a turn, without its pings.
+/// Size of the record of a turn without its pings, in bytes.
 pub const TURN: usize = 80;
-/// Number of bytes of the record of a ping.
+/// Size of the record of a ping, in bytes.
 pub const PING: usize = 56;
 
 /// The record of a body's shape.

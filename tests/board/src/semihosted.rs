@@ -1,5 +1,5 @@
-//! Entry point on the microcontroller. Its files are on the computer to which a debugger, or QEMU, connects it: the
-//! robot senses what the file `sensed` contains, and the output goes to `board.out`.
+//! Entry point on the microcontroller. Its files are on the host, a computer with a debugger or with QEMU: the robot
+//! senses what the file `sensed` contains, and the output goes to `board.out`.
 #![allow(unsafe_code, reason = "semihosting and the linker's symbols have addresses only")]
 
 use core::fmt::{self, Write};
@@ -13,7 +13,7 @@ use static_cell::StaticCell;
 
 use crate::lab_tour::LabTour;
 
-/// The plan with its machine. Like the robot's output, it is static, so that it is not on the stack.
+/// The plan with its machine. It is static, like the robot's output, to keep it off the stack.
 static MACHINE: StaticCell<Machine<LabTour>> = StaticCell::new();
 static SENSED: StaticCell<Output> = StaticCell::new();
 
@@ -67,7 +67,7 @@ impl Robot for Recorded {
     fn drive(&mut self, _: Input) {}
 }
 
-/// A file on the computer to which the board is connected.
+/// A file on the host.
 struct File(usize);
 
 impl File {
@@ -79,7 +79,7 @@ impl File {
 
     /// Fills `bytes` from the file; returns `false` if the file ends before `bytes` is full.
     fn read(&mut self, bytes: &mut [u8]) -> bool {
-        // SAFETY: at most as many bytes are written as there are.
+        // SAFETY: at most `bytes.len()` bytes are written to `bytes`.
         unsafe { syscall!(READ, self.0, bytes.as_mut_ptr(), bytes.len()) == 0 }
     }
 }
@@ -94,11 +94,11 @@ impl fmt::Write for File {
     }
 }
 
-/// Returns the maximum size that the stack has reached, in bytes.
+/// Returns the peak size of the stack, in bytes.
 fn deepest() -> usize {
     let (end, start) = (&raw const _stack_end, &raw const _stack_start);
     let mut at = end;
-    // SAFETY: the stack lies between both, and every word of it was painted.
+    // SAFETY: both pointers are inside the stack, every word of which was painted.
     while at < start && unsafe { at.read_volatile() } == PAINT {
         at = at.wrapping_add(1);
     }

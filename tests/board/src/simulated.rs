@@ -15,7 +15,7 @@ static MACHINE: StaticCell<Machine<LabTour>> = StaticCell::new();
 
 /// Period of a turn, as in `alphabet.mdle`.
 const PERIOD: Duration = Duration::from_millis(100);
-/// Maximum number of turns, more than a tour takes.
+/// Maximum number of turns; a tour takes fewer.
 const TURNS: usize = 6000;
 
 /// Runs the tour, and writes both files.
@@ -30,7 +30,7 @@ pub(crate) fn tour() -> Result<(), Box<dyn Error>> {
     let seed = arguments.next().map(|seed| seed.parse()).transpose()?;
     let world = World::office()?;
     let mut robot = Simulated::with(&Make { body, seed, ..Make::default() }, &world, world.start, PERIOD)?;
-    // The first exchange only shows the body, and is done again.
+    // The first exchange only provides the shape of the body; the run repeats it.
     let shape = robot.exchange(&Input::default())?.shape;
     let robot = Simulated::with(&Make { body, seed, ..Make::default() }, &world, world.start, PERIOD)?;
     let mut recorder = Recorder { robot, input: Input::default(), last: None, turns: 0, bytes: begin(&shape) };

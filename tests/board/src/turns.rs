@@ -9,7 +9,7 @@ use mdle_runtime::{
 };
 use static_cell::StaticCell;
 
-/// Maximum number of transitions of a turn that are printed.
+/// Maximum number of transitions that are printed for a turn.
 const PRINTED: usize = 4;
 
 /// The hardware of a robot.
@@ -39,7 +39,7 @@ pub fn at_rest(shape: Shape) -> Sensed {
     }
 }
 
-/// Runs a plan on a robot until the plan is over or the robot has no further cycle. For each turn, prints the line of a
+/// Runs a plan on a robot until the plan is over or the robot has no further cycle. For each turn, prints a line of the
 /// trace and the bits of the speeds.
 ///
 /// # Errors

@@ -1,5 +1,5 @@
-//! Tests each fault on each robot: the output of the executable, its exit status, and the distance that the body moves
-//! on. Compares the results with the book's page about faults, or writes this page.
+//! Tests each fault on each robot: the output and the exit status of the executable, and the distance that the body
+//! still moves. Compares the results with the book's page about faults, or writes this page.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "how long it took is seen with --nocapture")]
 
@@ -68,7 +68,7 @@ const BESIDES: [(Happening, &str); 4] = [
     (Happening::Killed, "the program is killed (SIGKILL)"),
 ];
 
-/// Function that returns an emulated robot with its properties.
+/// Function that creates an emulated robot, with its properties.
 type MakeRobot<R> = fn(Pace) -> (R, Nature<R>);
 /// A case of the table. The function runs the executable with an event, and returns the row.
 type Case<'r> = Box<dyn FnOnce() -> Row + Send + 'r>;
@@ -98,7 +98,7 @@ impl Robot {
         RefCell::new(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
     }
 
-    /// Returns the row for a device that is not a serial line, or to which no robot is connected.
+    /// Returns the row for a device that is not a serial port, or to which no robot is connected.
     fn without(&self, device: &Path) -> Row {
         let still = Way { metres: 0.0, time: Duration::ZERO };
         Row::of(self.started(device, IN_LOCKSTEP).into_inner().wait_with_output().unwrap(), still, None)
@@ -135,7 +135,7 @@ fn body(body: Body, step: Duration) -> Simulated {
 }
 
 fn scout(pace: Pace) -> (Scout, Nature<Scout>) {
-    // An answer of a type that nobody asked for, by a driver that waits for 300 ms from its command on.
+    // The driver waits up to 300 ms after its command; this answer has a type that was not requested.
     let wrong = |frame: &[u8]| answer(20, &frame[4..frame.len() - 2]);
     let waits = if pace == IN_LOCKSTEP { 3 } else { 0 };
     let nature = Nature { pose: Scout::pose, orders: Scout::orders, wrong, waits, step: pace.step() };
@@ -143,7 +143,7 @@ fn scout(pace: Pace) -> (Scout, Nature<Scout>) {
 }
 
 fn atrv(pace: Pace) -> (Atrv, Nature<Atrv>) {
-    // A report of a part that it has not, to a driver that waits for 300 ms from the last report on.
+    // The driver waits up to 300 ms after the last report; this report is about a part that the robot does not have.
     let wrong = |_: &[u8]| report(9, 0, 4, &[0; 25], &[]);
     let waits = if pace == IN_LOCKSTEP { 2 } else { 0 };
     let nature = Nature { pose: Atrv::pose, orders: Atrv::orders, wrong, waits, step: pace.step() };
@@ -177,7 +177,7 @@ fn cases<R: Emulated + 'static>(
     cases
 }
 
-/// Returns the rows of these cases, which run at the same time, because a driver without an answer waits long.
+/// Returns the rows of these cases. They run at the same time, because a driver without an answer waits for long.
 fn rows(cases: Vec<(String, Case<'_>)>) -> Vec<(String, Row)> {
     thread::scope(|scope| {
         let rows: Vec<_> = cases.into_iter().map(|(what, of)| (what, scope.spawn(of))).collect();
@@ -203,7 +203,7 @@ pub(crate) fn each_fault_stops_the_robot_or_is_borne() {
         let is_one_sentence = !row.message.is_empty() && !row.message.contains('\n');
         let is_over = row.status == Some(0) && row.message.starts_with("plan over: ");
         assert!(is_over || row.status == Some(3) && is_one_sentence || row.status.is_none(), "{what}: {row:?}");
-        // A robot that could receive a command received one to stop.
+        // If the robot could receive a command, the last command was one to stop.
         let is_cut = ["deaf", "close", "killed", "dies in mid-frame"].iter().any(|word| what.contains(word));
         assert!(is_cut || row.order != Some(Order::Drive), "{what}: {row:?}");
     }
@@ -216,14 +216,14 @@ pub(crate) fn each_fault_stops_the_robot_or_is_borne() {
     assert!(committed == text, "INSTA_UPDATE=always writes docs/src/faults.md\n{text}");
 }
 
-/// Maximum distance in metres that a body moves further by the clock than in lockstep. By the clock a fault may come a
-/// turn later after the last answer, and so may the command before it.
+/// Maximum additional distance, in metres, that a body moves by the clock, compared with lockstep. By the clock, a
+/// fault and the command before it may each come a turn later after the last answer.
 const FURTHER: f64 = 0.05;
 /// Maximum time from a fault to the end of the program, in seconds.
 const SOON: f64 = 1.5;
 
-/// A fault and an event that end a run, the maximum time until the end in seconds, and the maximum distance in metres
-/// that the body moves further by the clock than in lockstep.
+/// A fault and an event that end a run, the maximum time until the end in seconds, and the maximum additional distance
+/// in metres that the body moves by the clock, compared with lockstep.
 type End = (Option<Fault>, Happening, f64, f64);
 
 /// Faults and events that end a run on both robots, each in a different way.
@@ -235,8 +235,8 @@ const ENDS: [End; 6] = [
     (None, Happening::WrongAnswers, SOON, FURTHER),
     (None, Happening::DeadForAWhile, SOON, FURTHER),
 ];
-/// Faults that an ATRV's driver notices later: a missing bumper report after a second, and unanswered questions after
-/// two, because the last question may have been answered just before the fault.
+/// Faults that an ATRV's driver notices later: missing bumper reports after a second, and unanswered questions after
+/// two seconds, because the last question may have been answered just before the fault.
 const LATER: [End; 3] = [
     (Some(Fault::Body(Ailment::NoBumpers)), Happening::OnCommand, 2.0, 0.1),
     (Some(Fault::Body(Ailment::NoStatus)), Happening::OnCommand, 3.0, 0.25),

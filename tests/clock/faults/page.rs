@@ -19,19 +19,19 @@ pub(crate) struct Row {
 }
 
 impl Row {
-    /// Returns the row for an executable with this output, whose body has moved on by `way` and has received `order`
-    /// last.
+    /// Returns the row for an executable with this output, after whose fault the body moved by `way`. `order` is the
+    /// last order that the robot received.
     pub(crate) fn of(output: Output, way: Way, order: Option<Order>) -> Self {
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         let message = match err.strip_prefix("error: ") {
             Some(error) => error.trim_end().to_owned(),
             None => {
                 let last = out.lines().last().unwrap_or_default();
-                // The time is that of the run, not of the fault.
+                // The printed time is omitted, because it counts from the start of the run and not from the fault.
                 last.split_once(" s  ").map_or(last, |(_, end)| end).to_owned() + err.trim_end()
             }
         };
-        // Which terminal it was chance decides.
+        // The number of the terminal is arbitrary.
         let message = message.split(' ').map(|word| if word.starts_with("/dev/pts/") { "/dev/pts/N:" } else { word });
         let message = message.collect::<Vec<_>>().join(" ");
         Self { message, status: output.status.code(), way, order }

@@ -11,38 +11,37 @@ use super::PERIOD;
 
 /// Time of the robot's world at which an event begins; the robot drives at this time.
 pub(crate) const BEGINS: Duration = Duration::from_secs(4);
-/// Duration of garbage. `GARBAGE_A_SECOND` is the number of garbage bytes per second, as many as the slower line can
-/// carry.
+/// Duration of garbage. `GARBAGE_A_SECOND` is the number of garbage bytes per second, the capacity of the slower line.
 const GARBAGE: Duration = Duration::from_secs(60);
 const GARBAGE_A_SECOND: u32 = 3840;
-/// Time for which an interrupted line is dead.
+/// Time for which an interrupted line carries nothing.
 const DEAD: Duration = Duration::from_secs(2);
-/// Wait by which drivers in lockstep are distinguished: without an answer a driver waits longer, and with answers it
+/// Time between two commands in lockstep from which the driver must have waited without an answer. With answers, it
 /// waits much less.
 const IN_VAIN: Duration = Duration::from_millis(2000);
-/// Maximum movement in a step of a body that counts as still, in metres.
+/// Maximum movement in a step for which a body counts as still, in metres.
 const STANDS: f64 = 1e-4;
-/// Number of steps without movement after which the body certainly remains still, because no watchdog takes longer.
+/// Number of steps without movement after which the body remains still, because no watchdog takes longer.
 const FOR_GOOD: usize = 30;
 
 /// Event that happens to the robot, its line or its driver.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Happening {
-    /// No event: the device has belonged to another robot from the start.
+    /// No event: the device belongs to another robot from the start.
     Nothing,
-    /// The fault that `--fault` gives to the robot or its line, if there is one.
+    /// The fault that `--fault` gives to the robot or its line, if any.
     OnCommand,
     /// The line carries nothing but garbage for a minute.
     Garbage,
     /// The answers belong to other commands.
     WrongAnswers,
-    /// The line is interrupted in the middle of a frame, and comes back.
+    /// The line is interrupted in the middle of a frame, and works again later.
     DeadForAWhile,
     /// The program is killed.
     Killed,
 }
 
-/// Distance that the body moves on, in metres, and the duration of this movement.
+/// Distance that the body still moves, in metres, and the duration of this movement.
 #[derive(Debug)]
 pub(crate) struct Way {
     pub(crate) metres: f64,
@@ -55,22 +54,22 @@ pub(crate) struct Nature<R> {
     pub(crate) pose: fn(&R) -> Pose,
     /// Returns the orders that have reached the robot.
     pub(crate) orders: fn(&R) -> &Orders,
-    /// Changes a frame of the robot into the answer to another command.
+    /// Changes a frame of the robot into an answer to another command.
     pub(crate) wrong: fn(&[u8]) -> Vec<u8>,
-    /// Number of additional periods for which the robot moves while a driver waits without an answer, because the world
-    /// of an emulator in lockstep pauses during this wait.
+    /// Number of additional periods for which the robot moves while a driver waits without an answer. In lockstep, the
+    /// emulator's world pauses during this wait.
     pub(crate) waits: u32,
     /// Step by which the robot's time advances.
     pub(crate) step: Duration,
 }
 
-/// The emulated robot, whose poses are recorded and to which an event happens.
+/// The emulated robot to which an event happens. Its poses are recorded.
 pub(crate) struct Watched<'a, R> {
     robot: Faulty<R>,
     happening: Happening,
     nature: Nature<R>,
     child: &'a RefCell<Child>,
-    /// Time of the clock at which the event began; `None` before.
+    /// Real time at which the event began; `None` before the event.
     pub(crate) begun: Option<Instant>,
     age: Duration,
     /// Pose of the robot at the end of each step.
@@ -90,7 +89,7 @@ impl<'a, R: Emulated> Watched<'a, R> {
     /// the movement since the last answer before the event.
     pub(crate) fn left_alone(mut self) -> Way {
         while !self.stands() {
-            // A closed line does not stop the world.
+            // A closed line does not stop the robot's world.
             let _ = self.pass(self.nature.step);
             assert!(self.age < Duration::from_secs(300), "it never stands");
         }
@@ -111,13 +110,13 @@ impl<'a, R: Emulated> Watched<'a, R> {
         self.poses.len() > FOR_GOOD && self.poses.windows(2).rev().take(FOR_GOOD).all(|two| moved(two) <= STANDS)
     }
 
-    /// Returns `true` if the event is `happening` and now in progress; `lasts` is its duration.
+    /// Returns `true` if the event is `happening` and is now in progress. `lasts` is the duration of the event.
     fn is(&self, happening: Happening, lasts: Duration) -> bool {
         self.happening == happening && self.age.checked_sub(BEGINS).is_some_and(|since| since < lasts)
     }
 
-    /// Keeps the robot moving while a driver waits for an answer by its own clock, because in lockstep only commands
-    /// let time pass. For the driver, garbage is like silence; during garbage it gives up after the first wait.
+    /// Moves the robot on after its driver has waited for an answer by its own clock, because in lockstep only commands
+    /// let time pass. To the driver, garbage is like silence; during garbage it gives up after the first wait.
     fn waited(&mut self) {
         let in_vain = self.last_command.replace(Instant::now()).is_some_and(|time| time.elapsed() >= IN_VAIN);
         if in_vain || self.is(Happening::Garbage, GARBAGE) {
@@ -151,7 +150,7 @@ impl<R: Emulated> Emulated for Watched<'_, R> {
         }
         self.poses.push((self.age, (self.nature.pose)(self.robot.robot())));
         if self.is(Happening::Garbage, GARBAGE) {
-            // Any numbers will do that are the same each time.
+            // Arbitrary numbers that are the same in every run.
             let count = time.as_millis() as u32 * GARBAGE_A_SECOND / 1000;
             let numbers = (0..count).scan(self.age.as_millis() as u32, |number, _| {
                 *number = number.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

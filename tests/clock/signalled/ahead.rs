@@ -1,5 +1,5 @@
-//! A plan that drives ahead for a second, as an executable for two robots; the variable `ROBOT` selects the robot.
-//! Called as `ahead run PLAN`, the program is `mdle` with a module that takes 40 ms of each turn.
+//! A plan that drives ahead for a second, as an executable for two robots. The environment variable `ROBOT` selects the
+//! robot. Called as `ahead run PLAN`, the program is `mdle` with a module that takes 40 ms of each turn.
 
 use std::process::ExitCode;
 use std::thread;

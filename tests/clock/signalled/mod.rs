@@ -1,5 +1,5 @@
-//! Tests every signal that can be caught, at twenty points of a run on both robots: the robot is at rest, as its last
-//! command requires, and the exit status names the cause.
+//! Tests every signal that can be caught, at twenty points of a run, on both robots: the robot is at rest, as its last
+//! command requires, and the exit status names the signal.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 pub(crate) mod run;
@@ -21,15 +21,15 @@ use mdle_tests::executable::folder;
 use self::run::{AT_REST, LOCKSTEP, Ran, Robot, drove, ran, send};
 use super::at_once;
 
-/// Signals that end a program by default and can be caught, except SIGUSR1, SIGPIPE and SIGXFSZ, and a real-time
-/// signal.
+/// Signals that end a program by default and can be caught, including a real-time signal; SIGUSR1, SIGPIPE and SIGXFSZ
+/// are left out.
 const SIGNALS: [i32; 17] = [1, 2, 3, 5, 6, 7, 12, 14, 15, 16, 24, 26, 27, 29, 30, 31, 40];
 /// Number of points of a run at which signals are sent: before the first command, after the last one, and between them.
 const MOMENTS: usize = 20;
 /// Number of runs at the same time.
 const AT_A_TIME: usize = 8;
 
-/// Writes a configuration with which all sonars of a Scout ping early in the run, and returns its path.
+/// Writes a configuration that makes all sonars of a Scout ping early in the run, and returns its path.
 fn config(folder: &Path, robot: &str) -> std::path::PathBuf {
     let file = folder.join(robot);
     std::fs::write(&file, if robot == Scout::NAME { "gap = 4\n" } else { "" }).unwrap();
@@ -51,10 +51,10 @@ fn wrong<R: Robot>(signal: i32, ran: &Ran<R>) -> Option<String> {
     let (status, errors) = (ran.output.status, ran.errors());
     let is_commanded = !ran.received.bytes.is_empty();
     let is_right = match status.code() {
-        // Before the first command a signal does what it always does; after the end of the plan, nothing.
+        // Before the first command, a signal has its default effect; after the end of the plan, it has none.
         None => status.signal() == Some(signal) && !is_commanded,
         Some(0) => String::from_utf8_lossy(&ran.output.stdout).contains("plan over: "),
-        // A signal without a name in the library ends the program like this before the robot is opened.
+        // Before the robot is opened, a signal without a name in the library also ends the program with this status.
         Some(code) if code == 128 + signal => errors.contains("stopped by SIG") || !is_commanded,
         Some(_) => false,
     };
@@ -94,7 +94,7 @@ fn every_signal<R: Robot>() {
     let results = results.into_inner().unwrap();
     let wrong: Vec<_> = results.iter().filter(|(.., (_, wrong))| wrong.is_some()).collect();
     assert!(wrong.is_empty(), "{} of {}: {:#?}", wrong.len(), results.len(), &wrong[..wrong.len().min(10)]);
-    // The moments are before, in and after the run.
+    // The signals were sent before, during and after the run.
     let mut statuses = BTreeMap::<&str, usize>::new();
     results.iter().for_each(|(.., (status, _))| *statuses.entry(status).or_default() += 1);
     let over = statuses.get("exit status: 0").copied().unwrap_or_default();
@@ -131,7 +131,7 @@ fn a_signal_stops_both_robots_by_the_clock() {
 
 #[test]
 fn a_signal_ends_a_start_that_waits_for_the_robot() {
-    // A Scout that is setting its position to zero, which may take seconds, does not answer.
+    // While a Scout sets its position to zero, which may take seconds, it does not answer.
     let zero = mdle_scout::Command::Zero;
     let folder = folder("signalled_zeroing");
     for pace in [LOCKSTEP, Pace::Real] {

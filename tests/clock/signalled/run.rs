@@ -13,11 +13,11 @@ use mdle_sim::{Body, Make, Simulated, World};
 
 /// Period of the program's turns.
 const PERIOD: Duration = Duration::from_millis(100);
-/// Pace of the emulator: each command lets a period pass, so that no machine is too slow.
+/// Pace of the emulator: each command lets a period pass, so a slow machine has no effect.
 pub(crate) const LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
-/// Maximum movement in a period of a robot that is at rest, in metres.
+/// Maximum movement in a period for which a robot counts as at rest, in metres.
 pub(crate) const AT_REST: f64 = 0.001;
-/// Time after which a test fails; on any machine a run takes less.
+/// Time after which a test fails. A run takes less on any machine.
 const SLOW: Duration = Duration::from_secs(120);
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[9, -9], [9, 9], [-9, 9], [-9, -9], [9, -9]]";
@@ -29,8 +29,8 @@ pub(crate) trait Robot: Emulated + Sized {
     fn new(pace: Pace) -> Self;
     fn pose(&self) -> Pose;
     fn orders(&self) -> &Orders;
-    /// Returns `true` if the robot is in the correct state after a run that was stopped. `bytes` are all bytes that it
-    /// has received.
+    /// Returns `true` if the robot is in the correct state after a run that was stopped. `bytes` contains all bytes
+    /// that the robot has received.
     fn is_secured(&self, bytes: &[u8]) -> bool;
 }
 
@@ -54,7 +54,7 @@ impl Robot for Scout {
         self.orders()
     }
 
-    /// Returns `true` if the bytes end with ST, the question for the state until the robot is at rest, and LP.
+    /// Returns `true` if the bytes end with ST, requests for the state, repeated until the robot is at rest, and LP.
     fn is_secured(&self, bytes: &[u8]) -> bool {
         use mdle_scout::Command::{Limp, State, Stop};
         let [stop, state, limp] = [Stop, State, Limp].map(|command| command.frame().bytes().to_vec());
@@ -95,13 +95,13 @@ impl Robot for Atrv {
     }
 }
 
-/// Returns `true` if the frame commands an axis to stop. The axis is followed by four bytes of speed. The speed may be
-/// one unit instead of zero, so that no byte has to be escaped; a metre has 139,655 units.
+/// Returns `true` if the frame commands an axis to stop. Four bytes of speed follow the axis. The speed may be one unit
+/// instead of zero, to avoid a byte that has to be escaped; a metre has 139,655 units.
 fn is_rest(axis: u8, frame: &[u8]) -> bool {
     frame.starts_with(&[0x1B, 0x02, 2, 0, 7, 14, axis, 0, 0, 0]) && frame.get(10).is_some_and(|speed| *speed <= 1)
 }
 
-/// Returns `bytes` without any repetitions of `frame` at the end.
+/// Returns `bytes` without the trailing repetitions of `frame`.
 fn without<'b>(mut bytes: &'b [u8], frame: &[u8]) -> &'b [u8] {
     while let Some(before) = bytes.strip_suffix(frame) {
         bytes = before;
@@ -184,14 +184,14 @@ pub(crate) fn distance(one: &Pose, other: &Pose) -> f64 {
     libm::hypot(one.x.0 - other.x.0, one.y.0 - other.y.0)
 }
 
-/// Sends a signal to a process that has not been waited for.
+/// Sends a signal to a process for which its parent has not waited yet.
 pub(crate) fn send(signal: i32, process: u32) {
     let kill = format!("kill -{signal} {process}");
     assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
 }
 
-/// Gives SIGHUP its default effect in the programs that this one starts, even under `nohup`, which makes all of them
-/// ignore it: if this program catches a signal, the signal has its default effect in the programs that it starts.
+/// Gives SIGHUP its default effect in the programs that this program starts, even under `nohup`, which makes them
+/// ignore it: a signal that a program catches has its default effect in its child processes.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {

@@ -1,5 +1,5 @@
-//! Tests that a robot does not drive off again if its program is suspended while the robot drives or is being opened,
-//! and continues much later.
+//! Tests that a robot does not start to drive again if its program was suspended while the robot drove or was being
+//! opened, and continues much later.
 
 use std::time::Duration;
 
@@ -15,11 +15,12 @@ use super::run::{AT_REST, Ran, Robot, distance, drove, ran, send};
 
 /// Distance after which the robot counts as driving, in metres.
 const DRIVES: f64 = 0.03;
-/// Time for which the program is suspended, longer than the timeout of any robot's watchdog and the braking after it.
+/// Time for which the program is suspended. It is longer than the timeout of any robot's watchdog and the subsequent
+/// braking.
 const SUSPENDED: Duration = Duration::from_millis(2500);
 
-/// Returns a run in which the program is suspended once `begins` returns `true`, and the pose of the robot when the
-/// program continues.
+/// Suspends the program once `begins` returns `true`. Returns the run, and the pose of the robot when the program
+/// continued.
 fn suspended<R: Robot>(name: &str, begins: fn(&R) -> bool) -> (Ran<R>, Option<Pose>) {
     let folder = folder(&format!("suspended_{name}_{}", R::NAME));
     let config = folder.join("config.toml");
@@ -51,12 +52,12 @@ fn is_not_driven_off_again<R: Robot>() {
     assert!(ran.errors().contains("a fault stopped the robot: "), "{}", ran.errors());
 }
 
-/// Asserts that a program that is suspended after its first motion command, which stops the robot, refuses to drive and
-/// prints `words`.
+/// Asserts that a program refuses to drive and prints `words` if it was suspended after its first motion command, which
+/// stops the robot.
 fn is_not_driven<R: Robot>(words: &str) {
     let (ran, resumed) = suspended::<R>("opening", |robot| robot.orders().last().is_some());
     assert!(resumed.is_some() && !drove(&ran.robot), "{:?}", ran.robot.orders());
-    // It is refused, and nothing says that it was under way.
+    // The error is that of a refused start, and does not say that a running robot was stopped.
     let refused = format!("error: {words} was this computer suspended, or too busy?");
     assert!(ran.output.status.code() == Some(3) && ran.errors().starts_with(&refused), "{}", ran.errors());
 }

@@ -1,6 +1,6 @@
-//! Tests executables on an emulated robot that receives nothing, does not obey, answers late or no longer reports
-//! something, and programs that were suspended, by the clock. The tests check the last command that the robot received,
-//! and that it does not move.
+//! Tests executables by the clock on an emulated robot that receives nothing, does not obey, answers late or no longer
+//! reports something, and programs that were suspended. The tests check the last command that the robot received, and
+//! that the robot does not move.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "how long it took is seen with --nocapture")]
 
@@ -39,7 +39,7 @@ pub(crate) fn robots_stand_at_every_end_of_a_run() {
     ]);
 }
 
-/// Returns the results of these runs on both robots, which take place at the same time.
+/// Runs these functions for both robots at the same time, and returns their results.
 fn both(scout: impl FnOnce() -> Ran<Scout> + Send, atrv: impl FnOnce() -> Ran<Atrv> + Send) -> (Ran<Scout>, Ran<Atrv>) {
     thread::scope(|scope| {
         let scout = scope.spawn(scout);
@@ -56,7 +56,8 @@ fn a_robot_without_a_fault_ends_as_the_plan_says() {
 }
 
 fn an_atrv_that_receives_nothing_ends_the_plan() {
-    // One that stops by itself after a second, and one that does not; over a serial line and TCP.
+    // One robot stops by itself after a second and is connected by a serial line; the other drives on and is connected
+    // over TCP.
     let (ran_out, drives_on) = thread::scope(|scope| {
         let drives_on = scope.spawn(|| ran::<Atrv>(&["deaf", "runaway"], &[], Way::Tcp, |_, _| {}));
         (alone::<Atrv>(&["deaf"]), drives_on.join().unwrap())
@@ -68,7 +69,7 @@ fn an_atrv_that_receives_nothing_ends_the_plan() {
 }
 
 fn an_atrv_that_is_not_braked_is_reported() {
-    // The run ends before an unanswered question is a fault; the robot stops by itself meanwhile.
+    // The run ends before the unanswered question counts as a fault; meanwhile the robot stops by itself.
     let ran = ran::<Atrv>(&["deaf"], &["--timeout", "3.6"], Way::Terminal, |_, _| {});
     ran.assert(3, &["--timeout", "may not have stopped", "does not receive"], &[Order::Drive]);
     assert!(ran.robot.stands() && !ran.robot.is_braked());
@@ -77,7 +78,7 @@ fn an_atrv_that_is_not_braked_is_reported() {
 fn a_scout_that_receives_nothing_ends_the_plan() {
     let ran = alone::<Scout>(&["deaf"]);
     ran.assert(3, &["may not have stopped", "does not answer"], &[Order::Drive]);
-    // Its own watchdog is what stops it.
+    // The robot's own watchdog stops it.
     assert!(ran.robot.stands());
 }
 
@@ -89,7 +90,7 @@ fn a_robot_that_does_not_obey_ends_the_plan() {
 }
 
 fn a_stop_without_rest_is_reported() {
-    // The limit comes while it still does what it is told.
+    // The time limit is reached while the robot still obeys.
     let arguments = ["--timeout", "3.5"];
     let (scout, atrv) = both(
         || ran(&["runaway"], &arguments, Way::Terminal, |_, _| {}),
@@ -122,7 +123,7 @@ fn each_kind_of_report_of_an_atrv_that_stops_ends_the_plan() {
 
 fn a_scout_that_answers_late_ends_as_the_plan_says() {
     let file = executable::<Scout>().with_file_name("late.toml");
-    // Of the 400 ms that an answer may take, a busy machine has 200.
+    // An answer may take 400 ms; 200 ms of them are left for a busy machine.
     fs::write(&file, "answer = 400\nwatchdog = 5\n").unwrap();
     let arguments = ["--period", "0.5", "--config", file.to_str().unwrap()];
     let ran = ran::<Scout>(&["late=200"], &arguments, Way::Tcp, |_, _| {});
@@ -170,7 +171,7 @@ fn a_robot_is_not_driven_off_after_a_suspension() {
     let (scout, atrv) = both(|| ran(&[], &[], Way::Terminal, suspended), || ran(&[], &[], Way::Terminal, suspended));
     scout.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::LetGo]);
     atrv.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::Brake]);
-    // No order to drive came after the pause.
+    // The last order to drive came before the suspension.
     let drove = |orders: &Orders| orders.iter().rfind(|(_, order)| *order == Order::Drive).unwrap().0;
     for last in [drove(scout.robot.orders()), drove(atrv.robot.orders())] {
         assert!(last < BEGINS + Duration::from_secs(3), "{last:?}");

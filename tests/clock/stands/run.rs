@@ -24,7 +24,7 @@ const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -2], [4, 2], [-2, 2], [-2, -2], [4, -2]]";
 /// Time of the robot's world at which faults begin. The robot drives at this time and for about two more seconds.
 pub(crate) const BEGINS: Duration = Duration::from_millis(3500);
-/// Time after which a test fails; on any machine a run takes less.
+/// Time after which a test fails. A run takes less on any machine.
 const SLOW: Duration = Duration::from_secs(30);
 
 /// An emulated robot with the properties that a test reads.
@@ -140,7 +140,7 @@ pub(crate) fn ran<R: Robot>(
         meanwhile(&child, begun);
         let output = child.wait_with_output().unwrap();
         let took = begun.elapsed().saturating_sub(BEGINS);
-        // What has been sent is to arrive.
+        // Gives the emulator time to receive the last bytes.
         thread::sleep(Duration::from_millis(200));
         over.store(true, Ordering::Relaxed);
         serving.join().unwrap().unwrap();
@@ -158,11 +158,11 @@ pub(crate) enum Way {
     Terminal,
     /// TCP.
     Tcp,
-    /// TCP whose sending direction from the robot is closed when faults begin, while the robot still receives.
+    /// TCP. When faults begin, the direction from the robot is closed; the robot still receives.
     HalfClosed,
 }
 
-/// Returns an address that leads to this device over TCP, for a single connection.
+/// Returns a TCP address that leads to this device, for a single connection.
 fn bridged(device: &Path, way: Way) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
@@ -174,7 +174,7 @@ fn bridged(device: &Path, way: Way) -> String {
         let limit = if way == Way::HalfClosed { BEGINS } else { Duration::MAX };
         thread::spawn(move || {
             pumped(from, &to, limit);
-            // Nobody is there any more if the program has ended.
+            // This fails if the program has ended, which is not an error.
             let _ = to.shutdown(Shutdown::Write);
         });
         pumped(stream, device, Duration::MAX);

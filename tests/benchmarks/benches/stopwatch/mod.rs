@@ -1,5 +1,5 @@
-//! A robot that records when its turns begin, and a bare loop of `clock_nanosleep` with the same privileges for
-//! comparison.
+//! A robot that records when its turns begin, and a bare loop of `clock_nanosleep` with the same privileges as the
+//! baseline.
 
 use std::convert::Infallible;
 use std::time::{Duration, Instant};
@@ -16,8 +16,8 @@ use thread_priority::{
     thread_native_id,
 };
 
-/// Returns the lateness of a turn that begins `nanos` nanoseconds after the first, relative to the nearest deadline
-/// before it; negative for a turn that is up to a tenth of a period early.
+/// Returns the lateness, relative to the latest deadline, of a turn that begins `nanos` nanoseconds after the first;
+/// negative for a turn that begins up to a tenth of a period before a deadline.
 pub(crate) fn late(nanos: i64, period: Duration) -> i64 {
     let period = period.as_nanos() as i64;
     (nanos + period / 10).rem_euclid(period) - period / 10
@@ -31,7 +31,7 @@ fn tell(begins: &[Duration]) {
 pub(crate) fn bare(period: Duration, turns: usize) {
     let realtime = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
     let priority = ThreadPriority::try_from(50).expect("a priority");
-    // As for a plan, what is not permitted is done without.
+    // As for a plan, missing permissions are not an error.
     let _ = set_thread_priority_and_policy(thread_native_id(), priority, realtime);
     let _ = mlockall(MlockAllFlags::CURRENT);
     let mut begins = Vec::with_capacity(turns);
@@ -70,7 +70,7 @@ impl Robot for Stopwatch {
     }
 
     fn stop(&mut self) -> Result<(), Infallible> {
-        // One more exchange sends the null input.
+        // The last exchange, which sends the null input, is not a turn.
         self.begins.pop();
         tell(&self.begins);
         Ok(())

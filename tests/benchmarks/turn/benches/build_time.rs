@@ -1,11 +1,11 @@
-//! Measures the build time of emitted Rust, as the number of written-out atoms grows, and as the count of a loop grows.
+//! Measures the build time of emitted Rust as the number of written-out atoms grows, and as a loop count grows.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 use std::{env, fs};
 
-/// Number of times that each file is compiled; the fastest counts.
+/// Number of times that each file is compiled; the fastest run counts.
 const RUNS: usize = 5;
 
 /// Files that the build script has written, each with its description.
@@ -19,8 +19,8 @@ const PLANS: &[(&str, &str)] = &[
     ("looped_1000000000.rs", "10^9 passes through 2 atoms"),
 ];
 
-/// Code that is added to an emitted file. A generic turn is compiled only where it is used, and its compile time must
-/// be included.
+/// Code that is added to an emitted file to include the compile time of a turn, which is generic and therefore compiled
+/// only where it is used.
 const TURN: &str = "
 pub fn turn(
     machine: &mut ::mdle_runtime::Machine<T>,
@@ -52,7 +52,7 @@ fn main() {
     fs::remove_dir_all(folder).expect("the folder of this run");
 }
 
-/// Returns the libraries that an emitted file uses, each with its name and the file that cargo has built.
+/// Returns the libraries that an emitted file uses, each with its name and the path of the built file.
 fn libraries() -> Vec<(&'static str, PathBuf)> {
     let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
     let output = Command::new(env!("CARGO"))
@@ -64,7 +64,7 @@ fn libraries() -> Vec<(&'static str, PathBuf)> {
     let messages = String::from_utf8(output.stdout).expect("JSON");
     let built: Vec<serde_json::Value> = messages.lines().filter_map(|line| serde_json::from_str(line).ok()).collect();
     let file = |name: &str| {
-        // The last one: mdlec as a build script's dependency has a runtime of its own before it.
+        // The last match counts: an earlier one is the runtime of mdlec, which is a dependency of the build script.
         let library = built.iter().rfind(|message| message["target"]["name"] == name)?;
         let files = library["filenames"].as_array()?.iter().filter_map(serde_json::Value::as_str);
         files.map(PathBuf::from).find(|file| file.extension().is_some_and(|extension| extension == "rlib"))
@@ -88,8 +88,8 @@ fn compile(source: &Path, folder: &Path, libraries: &[(&str, PathBuf)]) -> (f64,
     (start.elapsed().as_secs_f64() * 1e3, used_by_children() - used)
 }
 
-/// Returns the user time of all children so far, in milliseconds. It is field 16 of `/proc/self/stat`, in hundredths of
-/// a second.
+/// Returns the user time of all children so far, in milliseconds: field 16 of `/proc/self/stat`, in hundredths of a
+/// second.
 fn used_by_children() -> f64 {
     let stat = fs::read_to_string("/proc/self/stat").expect("Linux");
     let after_name = stat.rsplit(')').next().expect("a name in brackets");

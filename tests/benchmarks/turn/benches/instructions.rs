@@ -48,8 +48,8 @@ machines! {
     table_100000: Table<100_000>,
 }
 
-/// Returns a configuration that counts only the instructions of a machine's turn, without those of its beginning and of
-/// the loop that calls it.
+/// Returns a configuration that counts the instructions of a machine's turn, without those of the plan's beginning and
+/// of the loop that calls the turn.
 fn turn_alone() -> LibraryBenchmarkConfig {
     let turn = EntryPoint::Custom("*as mdle_workload::machines::Robot>::turn".to_owned());
     LibraryBenchmarkConfig::default().tool(Callgrind::default().entry_point(turn)).clone()

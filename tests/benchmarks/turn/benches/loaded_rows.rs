@@ -1,6 +1,5 @@
-//! Compares the instructions of a turn of loaded rows with those of emitted rows. Callgrind counts them in the turn
-//! alone, without the loop that calls it and without the plan's beginning; the numbers are equal in every run. Needs
-//! Valgrind.
+//! Compares the instructions of a turn of loaded rows with those of emitted rows. Callgrind counts the turn alone,
+//! without the loop that calls it and without the plan's beginning. The numbers are equal in every run. Needs Valgrind.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 #![allow(clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
@@ -14,7 +13,7 @@ use mdle_workload::machines::plan::{Rows8, RowsRising8};
 
 /// Number of turns, a whole number of passes through 8 atoms.
 const TURNS: u32 = 10_000;
-/// Environment variable with the role of a process: the numbers of a pair, of a machine of the pair, and of a case.
+/// Environment variable with the role of a process: the number of a pair, of a machine of the pair, and of a case.
 const ROLE: &str = "MDLE_LOADED_ROWS_ROLE";
 /// Pairs of machines that are compared, each with its name, the emitted machine, and the loaded machine.
 const PAIRS: [(&str, fn(Case) -> f64, fn(Case) -> f64); 2] = [
@@ -46,7 +45,7 @@ fn compare() {
     }
 }
 
-/// Returns the number of instructions per turn of a process with this role.
+/// Returns the number of instructions per turn that a process with this role takes.
 fn counted(role: &str) -> f64 {
     let mut valgrind = Command::new("valgrind");
     valgrind.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]);

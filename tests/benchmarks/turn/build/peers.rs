@@ -1,4 +1,4 @@
-//! Source text of the peers of T(N): code that a person could write by hand, with a few lines for each atom.
+//! Source text of the peers of T(N): code that a person could write by hand, with a few lines per atom.
 
 /// Returns the concatenated texts of all atoms.
 fn each(atoms: u32, text: impl Fn(u32) -> String) -> String {
@@ -39,7 +39,7 @@ impl Robot for Match {{
     )
 }
 
-/// Returns a machine of the crate statig, whose macro generates the machine from a function for each state.
+/// Returns a machine of the crate statig. Its macro generates the machine from one function per state.
 pub fn statig(atoms: u32) -> String {
     let states = each(atoms, |atom| {
         let next = if atom + 1 == atoms { "over".to_owned() } else { format!("atom_{}", atom + 1) };

@@ -34,7 +34,7 @@ impl Case {
 
 /// Runs `turns` turns, and restarts the plan each time it is over. Returns the sum of all numbers that were written.
 ///
-/// The loop depends on the case only by the first output and the growth of the measurement, so that it costs the same
+/// The loop differs between the cases only in the first output and the growth of the measurement, so it costs the same
 /// in all cases.
 pub fn run<M: Robot>(case: Case, turns: u32) -> f64 {
     let (first, step) = case.outputs();

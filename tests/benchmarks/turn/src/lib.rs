@@ -2,7 +2,7 @@
 //! compared on it.
 #![forbid(unsafe_code)]
 
-// What mdlec emits names this crate as any other package would.
+// Emitted code refers to this crate by name, as from any other package.
 extern crate self as mdle_workload;
 
 pub mod alphabet;
@@ -15,7 +15,7 @@ pub mod quarks;
 pub struct Output {
     /// Measurement that the atoms' conditions read.
     pub measured: f64,
-    /// `true` if the plan is to end.
+    /// `true` if the plan should end.
     pub halt: bool,
 }
 

@@ -1,5 +1,5 @@
-//! Tests that all machines with the same number of atoms write the same numbers in every turn; otherwise comparing them
-//! would be meaningless.
+//! Tests that all machines with the same number of atoms write the same numbers in every turn; if not, a comparison of
+//! them would be meaningless.
 
 use mdle_runtime::{Nanos, Turn};
 use mdle_workload::machines::Robot;
@@ -11,7 +11,7 @@ use mdle_workload::machines::statig::Statig8;
 use mdle_workload::{Input, Output};
 
 /// Returns, for each turn, the growth of the measurement, which is less than `leap`, and the switch. Turns with no, one
-/// or several transitions occur, and the plan ends by itself or by the switch.
+/// and several transitions occur, and the plan ends both by itself and by the switch.
 fn script(leap: u32) -> Vec<(f64, bool)> {
     let mut seed = 1_u32;
     let mut draw = |below: u32| {
@@ -21,8 +21,8 @@ fn script(leap: u32) -> Vec<(f64, bool)> {
     (0..5_000).map(|_| (f64::from(draw(2 * leap)) / 2.0, draw(501) == 0)).collect()
 }
 
-/// Returns the result of a machine in each turn. When the plan is over, both the plan and the measurement restart:
-/// mdlec's machines limit the number of transitions in a turn, and the other machines do not.
+/// Returns the result of a machine in each turn. When the plan is over, both the plan and the measurement restart,
+/// because mdlec's machines limit the number of transitions in a turn and the other machines do not.
 fn turns<M: Robot>(script: &[(f64, bool)]) -> Vec<Turn<Input>> {
     let mut y = Output::default();
     let mut machine = M::begin(&y, Nanos(0));

@@ -57,7 +57,7 @@ mod thousand {
 #[cfg(feature = "thousands")]
 pub use thousand::Match as Match1000;
 
-/// T(8) as a `match` whose arms are written like those of `Match1000`.
+/// T(8) as a `match` with arms in the form of those of `Match1000`.
 mod eight {
     use super::{Input, Nanos, Output, Robot, Turn};
 

@@ -10,8 +10,8 @@ use mdle_runtime::{Nanos, Turn};
 
 use crate::{Input, Output};
 
-/// A machine that runs T(N). Its turn is not inlined into the loop that calls it, because it would not be inlined into
-/// a robot's driver.
+/// A machine that runs T(N). Its turn is not inlined into the calling loop, because it would not be inlined into a
+/// robot's driver either.
 pub trait Robot {
     /// Returns the plan at its first atom.
     fn begin(y: &Output, t: Nanos) -> Self;
@@ -20,7 +20,7 @@ pub trait Robot {
     fn turn(&mut self, y: &Output, t: Nanos) -> Turn<Input>;
 }
 
-/// A machine that does nothing, to measure the cost of the loop that calls a machine.
+/// A machine that does nothing, to measure the cost of the calling loop.
 #[derive(Debug)]
 pub struct Nothing;
 

@@ -25,7 +25,7 @@ macro_rules! machines {
             include!(concat!(env!("OUT_DIR"), $file));
         }
 
-        /// A machine that gets its event until one of its actions has set the input.
+        /// A machine that is sent the turn's event until one of its actions has set the input.
         #[allow(missing_debug_implementations, reason = "smlang's machine has none")]
         pub struct $machine($module::StateMachine<Context>);
 
@@ -38,7 +38,7 @@ macro_rules! machines {
             fn turn(&mut self, y: &Output, _: Nanos) -> Turn<Input> {
                 self.0.context_mut().turn = None;
                 loop {
-                    // Never an error: some transition of each state has no guard.
+                    // An error is impossible: each state has a transition without a guard.
                     let _ = self.0.process_event($module::Events::Turn(y));
                     if let Some(turn) = self.0.context().turn {
                         return turn;

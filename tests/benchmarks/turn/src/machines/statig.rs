@@ -17,7 +17,7 @@ macro_rules! charts {
             include!(concat!(env!("OUT_DIR"), $file));
         }
 
-        /// A chart that is run until one of its states sets the input.
+        /// A chart that is run until one of its states has set the input.
         #[allow(missing_debug_implementations, reason = "statig's machine has none")]
         pub struct $machine(InitializedStateMachine<$module::Chart>);
 
