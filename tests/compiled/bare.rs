@@ -1,5 +1,5 @@
-//! Emitted code has no path that panics: the executables of `tests/bare` link and run, though they define nothing that
-//! a panic could call.
+//! Tests that emitted code cannot panic: the executables of `tests/bare` link and run, although no function is defined
+//! that a panic could call.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -19,7 +19,7 @@ use mdle_compiler::{Compiled, builtin, compile};
 use mdle_tests::elf::sections;
 use mdle_tests::repository::root;
 
-/// The executables: what each is called, its plan, and the plan's shape.
+/// The executables, each with its name, its plan, and the plan's shape.
 const EXECUTABLES: [(&str, &str, Shape); 4] = [
     ("round_as_code", "Round", Shape::Code),
     ("round_as_rows", "Round", Shape::Rows),
@@ -27,7 +27,7 @@ const EXECUTABLES: [(&str, &str, Shape); 4] = [
     ("every_quark", "EveryQuark", Shape::Code),
 ];
 
-/// Script of the plan in which most of its interrupts fire.
+/// Script for the plan `Round` in which most of the plan's interrupts fire.
 const ROUND: &str = r#"
 {"t": 0.0, "fired": ["atIsection 0100"]}
 {"t": 0.1, "fired": ["atIsection 1000"]}
@@ -50,7 +50,7 @@ const ROUND: &str = r#"
 {"t": 9.7, "fired": ["atIsection 0001"]}
 "#;
 
-/// Another: time runs out, and contact is the end.
+/// Script for the plan `Round` in which timers fire and contact ends the plan.
 const ROUND_IN_TIME: &str = r#"
 {"t": 0.0}
 {"t": 20.0}
@@ -60,7 +60,7 @@ const ROUND_IN_TIME: &str = r#"
 {"t": 65.2, "fired": ["bumper"]}
 "#;
 
-/// Script of the plan in which measurements are compared.
+/// Script for the plan `Round` in which comparisons of measurements fire.
 const ROUND_BY_SIGNALS: &str = r#"
 {"t": 0.0}
 {"t": 0.1, "fired": ["r2 < 0.3"]}
@@ -71,7 +71,8 @@ const ROUND_BY_SIGNALS: &str = r#"
 {"t": 15.7, "fired": ["v >= 80"]}
 "#;
 
-/// The first element ends by time, the scopes after it by RISING; contact ends the plan.
+/// Script for the plan `Recall`: the first element ends by time and the following scopes by RISING; contact ends the
+/// plan.
 const RECALL: &str = r#"
 {"t": 0.0}
 {"t": 2.0}
@@ -84,7 +85,8 @@ const RECALL: &str = r#"
 {"t": 6.0, "fired": ["bumper"]}
 "#;
 
-/// Conditions that hold from the beginning do not rise, and the first element ends by the other operand.
+/// Script for the plan `Recall`: conditions that hold from the beginning do not rise, and the first element ends by its
+/// other operand.
 const RECALL_OTHERWISE: &str = r#"
 {"t": 0.0, "fired": ["bumper"]}
 {"t": 0.5, "fired": ["bumper", "atIsection 1000"]}
@@ -126,7 +128,7 @@ fn compiled(plan: &str) -> (Compiled, Alphabet) {
     (compiled.pop().expect("a plan"), alphabet)
 }
 
-/// The executables in a folder of this test's, built once.
+/// Returns the folder of the executables, which are built once.
 fn built() -> &'static Path {
     static BUILT: LazyLock<PathBuf> = LazyLock::new(|| {
         for (name, plan, shape) in EXECUTABLES {
@@ -153,7 +155,7 @@ fn target() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("bare/target")
 }
 
-/// Leaves the time of a file as it is where nothing has changed, so that it is not compiled again.
+/// Writes a file only if its text has changed, because a new modification time would cause a rebuild.
 fn write_if_changed(path: &Path, text: &str) {
     if fs::read_to_string(path).ok().as_deref() != Some(text) {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -165,7 +167,7 @@ fn cargo_build() -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.args(["build", "--release", "--locked", "--offline", "--quiet", "--target-dir"]).arg(target());
     command.current_dir(root().join("tests/bare")).env("PLANS", plans());
-    // What the workspace is built with is not for an executable without std.
+    // Settings for the workspace's build do not suit an executable without std.
     let about_builds = ["CARGO_BUILD", "CARGO_ENCODED", "CARGO_PROFILE", "RUSTFLAGS", "RUSTC_W"];
     for (name, _) in std::env::vars_os() {
         if about_builds.iter().any(|start| name.to_string_lossy().starts_with(start)) {
@@ -175,21 +177,21 @@ fn cargo_build() -> Command {
     command
 }
 
-/// Runs an executable on a script; returns its output.
+/// Runs an executable on a script, and returns its output.
 fn printed(executable: &str, script: &Script) -> String {
     let mut child =
         Command::new(built().join(executable)).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
     let outputs: Vec<u8> = script.turns().iter().flat_map(record).collect();
-    // An executable whose plan is over reads no further.
+    // This fails if the plan is over before all input is read, which is not an error.
     let _ = child.stdin.take().unwrap().write_all(&outputs);
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(0));
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Returns the record of an output on which the quarks report the script's values, as the executables read it. Pose and
-/// ranges are of the turn alone. The robot rests only where the script completes a law, so that no law completes by
-/// itself.
+/// Returns the record, as the executables read it, of an output for which the quarks report the script's values. Pose
+/// and ranges depend on this turn alone. The robot is at rest only where the script completes a law, so that no law
+/// completes by itself.
 fn record(reports: &Reports) -> Vec<u8> {
     let message = |text: &str| reports.completed.contains(text);
     let goals =
@@ -198,7 +200,7 @@ fn record(reports: &Reports) -> Vec<u8> {
     let x = if message("goAvoid 0 2 20") { 2.0 } else { 0.0 };
     let omega = if reports.completed.is_empty() { 0.5 } else { 0.0 };
     let pressed = f64::from(u8::from(reports.fired.contains("bumper")));
-    // Without a pattern everything is near: `atIsection 1111`, which no plan asks for.
+    // Without a pattern, all ranges are short: `atIsection 1111`, which no plan reads.
     let pattern = reports.fired.iter().find_map(|text| text.strip_prefix("atIsection ")).unwrap_or("1111");
     let mut ranges = [1.0; 16];
     for (range, bit) in ranges.iter_mut().step_by(4).zip(pattern.chars()) {
@@ -216,8 +218,8 @@ fn record(reports: &Reports) -> Vec<u8> {
     std::iter::once(reports.t.0).chain(bits).flat_map(u64::to_le_bytes).collect()
 }
 
-/// Asserts that an executable and the compiler's machine behave equally on a script. Returns the executable's lines,
-/// the inputs after the turns.
+/// Asserts that an executable and the compiler's machine behave equally on a script. Returns the printed turns, each
+/// with its input.
 fn traced(executable: &str, plan: &str, script: &str) -> String {
     let (Compiled { plan, .. }, _) = compiled(plan);
     let script = Script::read(script).expect("a script");
@@ -249,7 +251,7 @@ fn memories_link_and_run() {
     insta::assert_snapshot!(turns);
 }
 
-/// Returns the conditions of a plan that ended no element in these turns.
+/// Returns the conditions of a plan by which no element ended in these turns.
 fn never_fired(plan: &str, turns: &str) -> Vec<String> {
     let (Compiled { machine, .. }, _) = compiled(plan);
     let interrupts = machine.elements().filter_map(mdle_compiler::fsm::Element::interrupt);
@@ -279,7 +281,7 @@ fn a_plan_with_its_machine_is_less_than_16_kilobytes_of_code() {
     });
     println!("{sizes:?}");
     assert!(sizes[0].1 < 16 * 1024, "{sizes:?}");
-    // Rows bring every quark of the robot with them, whether the plan has it or not; and these executables report
+    // Rows include every quark of the robot, even if the plan does not use it, and these executables also report
     // operands.
     assert!(sizes.iter().all(|(_, code, _)| *code < 48 * 1024), "{sizes:?}");
 }

@@ -1,5 +1,5 @@
-//! `mdlec` and its cache folder: several processes at once, a cache that is damaged or cannot be used, no network;
-//! through the real binary.
+//! Tests `mdlec` and its cache folder, through the real binary: several processes at once, a cache that is damaged or
+//! cannot be used, and builds without a network.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
@@ -15,7 +15,7 @@ const BUILD: [&str; 3] = ["plan.mdle", "--target", "sim"];
 /// An address without a server.
 const NOWHERE: &str = "http://127.0.0.1:1";
 
-/// A plan that is over after some seconds.
+/// Returns a plan that is over after `seconds` seconds.
 fn plan(seconds: usize) -> String {
     format!("{{ Rest (Atom (wait {seconds}) stop) }}\n")
 }
@@ -30,7 +30,7 @@ fn assert_built(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Runs the executable in `folder`, which must be that of the plan that rests for `seconds`.
+/// Runs the executable in `folder`, and asserts that its plan rests for `seconds` seconds.
 fn assert_rests(folder: &Path, seconds: usize) {
     let run = Command::new(folder.join("plan")).args(["--speed", "max"]).output().unwrap();
     assert_eq!(
@@ -39,7 +39,7 @@ fn assert_rests(folder: &Path, seconds: usize) {
     );
 }
 
-/// Returns the message about a plan that does not become an executable.
+/// Returns the message of a build that must fail.
 fn refused(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let message = String::from_utf8(output.stderr).unwrap();
@@ -94,7 +94,7 @@ fn damage_is_mended_before_it_is_handed_out() {
     let folder = with_plan("damaged", 3);
     assert_built(&run_mdlec(&folder, &BUILD));
     {
-        // Held as a running mdlec holds it: others of these tests are kept from seeing the damage.
+        // The lock is held as by a running mdlec, so that other tests do not see the damage.
         let lock = File::options().append(true).open(cache().join("lock")).unwrap();
         lock.lock().unwrap();
         let (executables, sources) = (stored(&cache(), "plan-plan-"), stored(&cache(), "alphabet.rs"));
@@ -112,7 +112,7 @@ fn damage_is_mended_before_it_is_handed_out() {
     assert_rests(&folder, 3);
 }
 
-/// The executables and sources below `folder` whose names begin so.
+/// Returns the files below `folder`, executables and sources, whose names begin with `start`.
 fn stored(folder: &Path, start: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -132,7 +132,7 @@ fn stored(folder: &Path, start: &str) -> Vec<PathBuf> {
 #[test]
 fn an_unusable_cache_folder_is_an_error() {
     let folder = with_plan("no_cache", 1);
-    // Permissions do not bind a superuser; these bind everyone.
+    // A superuser is not bound by permissions; these places cannot be used by anybody.
     for place in ["plan.mdle", "plan.mdle/cache", "/proc/mdlec"] {
         let message = refused(command(&folder, &BUILD).env("MDLEC_CACHE", place));
         assert!(message.starts_with(&format!("error: the cache cannot be used at `{place}` (")), "{message}");
@@ -158,7 +158,7 @@ fn a_cache_that_others_can_change_is_refused() {
         "{message}"
     );
     open(&folder, 0o755);
-    // The cache itself is closed to others, and what they may have put there goes.
+    // mdlec makes the cache folder private, and removes what other users may have put there.
     for folder in [folder.join("cache/target"), folder.join("cache/plans")] {
         fs::create_dir_all(folder.join("strange")).unwrap();
     }
@@ -173,8 +173,8 @@ fn a_cache_that_others_can_change_is_refused() {
 #[test]
 fn a_waiting_build_names_the_other() {
     let folder = with_plan("waits", 5);
-    // Another test's build may be the one that is waited for, and itself wait for this lock: then all let go, and begin
-    // again.
+    // The message may be about the build of another test, which itself waits for this lock: in this case, releases the
+    // lock and tries again.
     let heard = |lock: &Path, sentence: &str| loop {
         let file = File::options().create(true).append(true).open(lock).unwrap();
         file.lock().unwrap();
@@ -218,7 +218,7 @@ fn without_a_c_compiler_it_says_what_to_install() {
             symlink(place, tools.join(tool)).unwrap();
         }
     }
-    // The second build finds what the first compiled before it failed.
+    // The second build uses the libraries that the first build compiled before it failed.
     for _ in 0..2 {
         let message = refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache").env("PATH", &tools));
         assert!(
@@ -244,7 +244,7 @@ fn missing_libraries_are_an_error() {
     let nothing = |name: &str, value: &str| {
         let mut command = command(&folder, &BUILD);
         command.env("MDLEC_CACHE", "cache").env("CARGO_HOME", folder.join("cargo"));
-        // Cargo would wait between its attempts.
+        // Without this setting, cargo would retry and wait.
         refused(command.env("CARGO_NET_RETRY", "1").env(name, value))
     };
     let missing = "error: the libraries that executables are built on are not on this machine yet, and ";

@@ -1,5 +1,5 @@
-//! Cargo's configuration does not change an executable: neither a file above the cache or the target, nor a profile in
-//! cargo's home; through the real binary and the real cargo.
+//! Tests that cargo's configuration does not change an executable: neither a file above the cache or the target, nor a
+//! profile in cargo's home. Uses the real binary and the real cargo.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -11,10 +11,10 @@ use std::sync::{Mutex, PoisonError};
 use mdle_tests::executable::{command, folder, target};
 use toml::Table;
 
-/// The cache and cargo's home are one for all tests here.
+/// Locked by a test while it builds, because all tests here share the cache and cargo's home.
 static BUILDING: Mutex<()> = Mutex::new(());
 
-/// Settings in cargo's home that would change executables, or move what cargo compiles out of the cache.
+/// Settings in cargo's home that would change executables, or move compiled files out of the cache.
 const HOSTILE: &str = r#"
 [build]
 build-dir = "moved/build"
@@ -37,15 +37,16 @@ overflow-checks = true
 debug-assertions = true
 "#;
 
-/// A folder above the cache, in which others could have put a configuration. Compiled libraries outlive the tests.
+/// Returns a folder above the cache, in which other users could have put a configuration. The libraries compiled there
+/// are kept between test runs.
 fn above() -> PathBuf {
     let above = target().join("tmp/cargo_configuration");
     fs::create_dir_all(&above).unwrap();
     above.canonicalize().unwrap()
 }
 
-/// Writes a configuration in `folder` whose compiler wrapper leaves the file `strange` there, and a toolchain that does
-/// not exist.
+/// Writes a configuration in `folder` whose compiler wrapper creates the file `strange` there, and a toolchain file
+/// with a toolchain that does not exist.
 fn put_strangers(folder: &Path) {
     fs::create_dir_all(folder.join(".cargo")).unwrap();
     let wrapper = folder.join(".cargo/wrapper");
@@ -58,7 +59,8 @@ fn put_strangers(folder: &Path) {
     fs::write(folder.join("rust-toolchain.toml"), "[toolchain]\nchannel = \"1.2.3-strange\"\n").unwrap();
 }
 
-/// A home of cargo's with [`HOSTILE`] added to the configuration that this machine has, and the same libraries.
+/// Returns a home of cargo with the configuration of this machine, extended by [`HOSTILE`], and with the same
+/// libraries.
 fn cargo_home() -> PathBuf {
     let ours = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let ours = ours.unwrap_or_else(|| std::env::home_dir().unwrap().join(".cargo"));
@@ -73,12 +75,13 @@ fn cargo_home() -> PathBuf {
     home
 }
 
-/// `mdlec` in `folder`, with strangers' files above its cache and in `folder`.
+/// Runs `mdlec` in `folder`, with foreign configurations above its cache and in `folder`.
 fn mdlec_among_strangers(folder: &Path, arguments: &[&str]) -> Output {
     put_strangers(&above());
     put_strangers(folder);
     let mut command = command(folder, arguments);
-    // The cargo that runs this test names its toolchain, which would win over the strangers'.
+    // The cargo that runs this test sets the toolchain in the environment, which would take precedence over the foreign
+    // one.
     command.env("MDLEC_CACHE", above().join("cache")).env("CARGO_HOME", cargo_home()).env_remove("RUSTUP_TOOLCHAIN");
     command.output().unwrap()
 }
@@ -87,7 +90,8 @@ fn assert_done(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Writes a robot in `rover`, whose driver does `body` in each turn and leaves the file `stopped` when it is stopped.
+/// Writes a robot in `rover`, whose driver executes `body` in each turn and creates the file `stopped` when it is
+/// stopped.
 fn with_rover(test: &str, body: &str) -> PathBuf {
     let folder = folder(test);
     assert_done(&command(&folder, &["new-target", "rover"]).output().unwrap());
@@ -104,7 +108,8 @@ fn with_rover(test: &str, body: &str) -> PathBuf {
     folder
 }
 
-/// Adds one to the largest number of eight bits, which panics only where overflow is checked, and panics then.
+/// Code of the driver. It panics at once if overflow is checked or another hostile setting has an effect, and later in
+/// any case.
 const DRIVER: &str = "assert_eq!(std::hint::black_box(255_u8) + std::hint::black_box(1), 0);\n        \
                       assert!(!cfg!(configured) && !cfg!(debug_assertions), \"configured\");\n        \
                       if self.pose.x.0 > 0.05 { panic!(\"the driver of the test\") }";
@@ -131,7 +136,7 @@ fn configuration_above_the_cache_and_the_target_has_no_effect() {
         assert_done(&output);
         String::from_utf8(output.stderr).unwrap()
     };
-    // It is named once, where it would have had an effect.
+    // The file is named only once, when it would first have had an effect.
     let note = format!(
         "{}/.cargo/config.toml has no effect: builds read the configuration in cargo's home only\n",
         folder.display()

@@ -1,4 +1,4 @@
-//! The applications of the book, whose build scripts compile a plan: built and run by the real cargo.
+//! Tests the applications of the book whose build scripts compile a plan, built and run by the real cargo.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -11,15 +11,15 @@ use mdle_tests::executable::folder;
 use mdle_tests::outside;
 use mdle_tests::repository::root;
 
-/// Only one test at a time builds the application: its folder and its executable are the same for all.
+/// Locked by a test while it builds the application, because all tests share its folder and its executable.
 static BUILDING: Mutex<()> = Mutex::new(());
 
-/// The application of `embedding.md`, which is that of `tests/application` with a manifest of its own.
+/// Writes the application of `embedding.md`: that of `tests/application`, but with a manifest of its own.
 fn application() -> (PathBuf, Vec<Fence>) {
     written("application", "embedding.md")
 }
 
-/// Writes the application of a page, as a reader does.
+/// Writes the application of a page, as a reader does. Returns its folder and the blocks of the page.
 fn written(test: &str, chapter: &str) -> (PathBuf, Vec<Fence>) {
     let folder = folder(test);
     let page = pages().into_iter().find(|page| name(page) == chapter).expect("a chapter");
@@ -29,7 +29,7 @@ fn written(test: &str, chapter: &str) -> (PathBuf, Vec<Fence>) {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, &fence.text).unwrap();
     }
-    // The checkout is not beside it, but around it.
+    // The checkout is not a sibling of the application's folder; it contains this folder.
     let elsewhere = format!("path = \"{}/", root().to_str().unwrap());
     change(&folder.join("Cargo.toml"), "path = \"../mdle/", &elsewhere);
     change(&folder.join("Cargo.toml"), "\n[dependencies]", "\n[workspace]\n\n[dependencies]");
@@ -37,7 +37,7 @@ fn written(test: &str, chapter: &str) -> (PathBuf, Vec<Fence>) {
     (folder, fences)
 }
 
-/// Builds and runs it.
+/// Builds and runs the application.
 fn run(folder: &Path) -> Output {
     cargo_run(folder, "--quiet", &["--speed", "max"])
 }
@@ -46,7 +46,7 @@ fn cargo_run(folder: &Path, loudness: &str, arguments: &[&str]) -> Output {
     outside::cargo(folder, &["run", loudness, "--"]).args(arguments).output().expect("cargo runs")
 }
 
-/// Returns the output of the program, which was built without messages.
+/// Returns the output of the application; asserts that the build prints no messages.
 fn printed(folder: &Path) -> String {
     let output = run(folder);
     let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
@@ -75,7 +75,7 @@ fn an_application_runs_its_plan_and_is_built_anew_when_a_file_of_it_changes() {
     let second = printed(&folder);
     assert!(second.contains(" turn 90 ") && !second.contains("180"), "{second}");
 
-    // What is wrong with it stops the build, and nothing else is said.
+    // An error in it stops the build, and nothing else is printed.
     change(&sides, "turn 90", "tern 90");
     let output = run(&folder);
     assert_eq!(output.status.code(), Some(101));
@@ -84,7 +84,7 @@ fn an_application_runs_its_plan_and_is_built_anew_when_a_file_of_it_changes() {
     assert!(cargo.contains("(exit status: 1)") && !cargo.contains("--- stdout"), "{cargo}");
     insta::assert_snapshot!(script);
 
-    // Mended, it is what it was, but for what cargo is told to show.
+    // With the error corrected, only a warning is left, which cargo prints.
     change(&sides, "tern 90", "turn 180");
     change(&sides, "(null)", "(bumper)");
     let output = cargo_run(&folder, "--color=never", &["--speed", "max"]);

@@ -1,6 +1,7 @@
-//! Emitted Rust, compiled: it does what the machines of the compiler do (docs/src/reference/semantics.md, 9).
+//! Tests that emitted Rust, when compiled, behaves like the machines of the compiler (docs/src/reference/semantics.md,
+//! 9).
 //!
-//! Every plan is emitted in every shape. Each shape is one package, which is compiled once and run once.
+//! Every plan is emitted in every shape. All plans of a shape form one package, which is compiled once and run once.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -19,11 +20,11 @@ use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdle_tests::repository::root;
 
-/// Number of random plans that are emitted in each shape, and of scripts on which each plan runs.
+/// Number of random plans that are emitted in each shape. `SCRIPTS` is the number of scripts on which each plan runs.
 const PLANS: u64 = 20;
 const SCRIPTS: u64 = 25;
 
-/// Names of plans, each of which a generated file may have a use of its own for.
+/// Names of plans that could collide with names in a generated file.
 const ROOTS: &[&str] = &[
     "Main", "Cursor", "Plan", "Output", "At", "Nanos", "Fsm", "Begin", "Cause", "Next", "atom", "Bracket", "Input",
     "Running",
@@ -68,16 +69,16 @@ fn compare(shape: Shape) {
     }
 }
 
-/// Returns a random plan. Every second plan remembers nothing: plans that do are always emitted as rows.
+/// Returns a random plan. Every second plan has no memories, because plans with memories are always emitted as rows.
 fn random(seed: u64) -> Case {
     let root = ROOTS[seed as usize % ROOTS.len()];
     let draw = |drawn: u64| {
         let plans = repeated(PLANS);
         let mut chance = Chance::new(1_000_000 + seed + drawn * plans);
-        // From the first plan to the last, some 4 to 24 atoms.
+        // The first plans have about 4 atoms, and the last ones about 24.
         let size = 4 + (20 * seed / plans) as usize;
         let text = RandomPlan::new(&mut chance, size, seed % 20 == 19).named(root).to_string();
-        // Loops in loops in loops can make too many states.
+        // Nested loops can lead to too many states.
         let compiled = compile_plan(&text, root).ok()?;
         if seed.is_multiple_of(2) && compiled.machine.sizes().memories > 0 {
             return None;
@@ -88,8 +89,8 @@ fn random(seed: u64) -> Case {
     (0..1000).find_map(draw).expect("a plan")
 }
 
-/// Returns a plan with each interrupt and each law of the target once, arguments in their default units, so that the
-/// test sees that each is created with the arguments in its text.
+/// Returns a plan that contains each interrupt and each law of the target, with arguments in default units, to test
+/// that each is created with the arguments in its text.
 fn every_quark() -> Case {
     let mut text = String::from("{ Main");
     for (number, interrupt) in INTERRUPTS.iter().enumerate() {
@@ -98,7 +99,7 @@ fn every_quark() -> Case {
     text.push_str(" }");
     let mut script = String::new();
     for (turn, interrupt) in INTERRUPTS.iter().enumerate() {
-        // First what must not do anything, then what ends the atom.
+        // First a turn that must not end the atom, then a turn that ends it.
         let others: Vec<_> =
             INTERRUPTS.iter().filter(|other| *other != interrupt).map(|text| format!("{text:?}")).collect();
         writeln!(script, "{{\"t\":{turn}.0,\"fired\":[{}]}}", others.join(",")).unwrap();
@@ -110,7 +111,7 @@ fn every_quark() -> Case {
     Case { root: "Main", text, scripts: vec![script, completions] }
 }
 
-/// Scopes in scopes: a hundred, each with a condition of its own.
+/// Returns a plan with a hundred nested scopes, each with its own condition.
 fn deep() -> Case {
     let scopes = (0..100).map(|level| format!("{{ Level{level} ({} AND wait {level}) ", ["a", "b", "c"][level % 3]));
     let text =
@@ -151,7 +152,7 @@ impl Package {
         package
     }
 
-    /// Writes a file unless it is there as it should be, so that what did not change is not compiled again.
+    /// Writes a file only if its text has changed, so that unchanged files are not compiled again.
     fn file(&self, name: &str, text: &str) {
         let path = self.folder.join(name);
         if fs::read_to_string(&path).ok().as_deref() != Some(text) {
@@ -159,7 +160,7 @@ impl Package {
         }
     }
 
-    /// Compiles the plans and runs each on its scripts; returns their traces, one after another.
+    /// Compiles the plans, and runs each on its scripts. Returns their traces, one after another.
     fn run(&self, cases: &[Case]) -> String {
         let mut turns = String::new();
         for (number, case) in cases.iter().enumerate() {
@@ -188,7 +189,7 @@ fn manifest() -> String {
     )
 }
 
-/// A script as `main` reads it: nanoseconds, then what is reported as the bits of two numbers.
+/// Returns a script in the form that `main` reads: per turn, the time in nanoseconds, and the reports as numbers.
 fn bits(script: &str) -> String {
     let turns = outputs(&Script::read(script).expect("a script"));
     let lines = turns.iter().map(|(t, y)| {

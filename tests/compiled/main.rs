@@ -1,4 +1,5 @@
-//! Packages around plans: what `mdlec` writes compiles and does what the plan means, and cargo builds it anywhere.
+//! Tests packages that contain plans: Rust that `mdlec` writes compiles and behaves like the plan, and cargo builds it
+//! anywhere.
 
 mod bare;
 mod cache;

@@ -1,4 +1,5 @@
-//! `mdle new-module`: its crate builds, its test passes, and fails with a module that publishes something else.
+//! Tests `mdle new-module`: the crate builds and its test passes, but the test fails if the module publishes another
+//! value.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -8,7 +9,7 @@ use std::process::Command;
 use mdle_tests::executable::{folder, mdle, target};
 use mdle_tests::repository::{files, root};
 
-/// Creates a module in this folder, whose packages are those of this checkout.
+/// Creates a module in this folder that depends on the packages of this checkout.
 fn create(folder: &Path, name: &str) {
     let mut command = Command::new(mdle());
     command.args(["new-module", name, "--checkout"]).arg(root()).current_dir(folder);
@@ -20,7 +21,7 @@ fn create(folder: &Path, name: &str) {
     );
 }
 
-/// Returns `true` if the tests of the module in this folder pass, and cargo's output.
+/// Runs the tests of the module in this folder. Returns `true` if they pass, and cargo's output.
 fn tested(module: &Path) -> (bool, String) {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
@@ -35,7 +36,7 @@ fn a_plan_waits_for_a_new_module() {
     let folder = folder("new_module");
     create(&folder, "ears");
     let module = folder.join("ears");
-    // No network is needed.
+    // With this lock file, no network is needed.
     fs::copy(root().join("Cargo.lock"), module.join("Cargo.lock")).unwrap();
     let (passed, message) = tested(&module);
     assert!(passed, "{message}");

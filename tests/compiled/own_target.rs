@@ -1,5 +1,5 @@
-//! A target that did not come with `mdlec`: it works like any other, and the messages about its crate are quoted whole,
-//! under one sentence that names the crate at fault; through the real binary.
+//! Tests a target that is not part of `mdlec`, through the real binary: it works like any other target, and compile
+//! errors in its crate are quoted in full, after a sentence that names the crate.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -12,19 +12,20 @@ use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::outside;
 use mdle_tests::repository::{files, root};
 
-/// Returns the sentence above the messages of rustc about the rover's crate.
+/// Returns the sentence before rustc's errors in the rover's crate, and the start of the first error.
 fn sentence() -> String {
     let name = crate_name();
     format!("error: the target crate `{name}` does not compile; this is not a fault of your plan:\nerror[E0425]: ")
 }
 
-/// The crate of the rover.
+/// Returns the name of the rover's crate.
 fn crate_name() -> &'static str {
     sized("rover_target", "mdle_sim")
 }
 
-/// The folder of a plan, with a robot of one's own in `rover`: the template, on the libraries of the cache. In the long
-/// form it is a copy of the simulator, in a workspace of its own, on the libraries of the repository.
+/// Returns the folder of a plan, with a user's robot in `rover`: the template, built on the libraries of the cache. In
+/// the long form of the test it is a copy of the simulator, in its own workspace, built on the libraries of the
+/// repository.
 fn with_rover(test: &str) -> PathBuf {
     let folder = folder(test);
     fs::write(folder.join("plan.mdle"), "{ Rest (Atom (wait 1ms) stop) }\n").unwrap();
@@ -38,7 +39,7 @@ fn with_rover(test: &str) -> PathBuf {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(path, file.text).unwrap();
     }
-    // The workspace that the crate takes its versions from; the packages of the runtime stay in the repository.
+    // The crate takes its versions from this workspace; the packages of the runtime stay in the repository.
     let workspace = fs::read_to_string(root().join("Cargo.toml")).unwrap();
     let (before, behind) = workspace.split_once("members = [").unwrap();
     let (_, behind) = behind.split_once("]\ndefault-members = [\"mdlec\"]\n").unwrap();
@@ -49,13 +50,13 @@ fn with_rover(test: &str) -> PathBuf {
     folder
 }
 
-/// Returns the message about a plan for the rover that does not become an executable.
+/// Returns the message of a build for the rover that must fail.
 fn refused(folder: &Path) -> String {
     let output = run_mdlec(folder, &["plan.mdle", "--target", "rover"]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]), "{message}");
     assert!(!folder.join("plan").exists());
-    // Of this, only the first build of all says something.
+    // These lines are left out, because they depend on other builds.
     message
         .lines()
         .filter(|line| !line.starts_with("compiling libraries") && !line.starts_with("waiting for"))
@@ -99,7 +100,7 @@ fn a_new_target_drives_and_feels_contact_once_it_can() {
     let (status, message) = done(&["plan.mdle", "--target", "./rover"]);
     assert!(status == Some(1) && message.contains("bumper"), "{message}");
 
-    // As the book says.
+    // As described in the book.
     let change = |file: &str, from: &str, to: &str| {
         let path = folder.join("rover").join(file);
         let text = fs::read_to_string(&path).unwrap();
@@ -119,7 +120,7 @@ fn a_new_target_drives_and_feels_contact_once_it_can() {
     ");
 }
 
-/// Returns `true` if the robot in this folder passes the conformance suite, and cargo's output.
+/// Runs the conformance suite on the robot in this folder. Returns `true` if it passes, and cargo's output.
 fn conformance(robot: &Path) -> (bool, String) {
     let output = outside::cargo(robot, &["test", "--quiet", "--test", "conformance"]).output().unwrap();
     let message = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
@@ -131,7 +132,7 @@ fn a_new_target_conforms_until_a_sign_is_wrong() {
     let folder = folder("new_target_conforms");
     assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
     let robot = folder.join("rover");
-    // As the book says, for cargo by itself.
+    // As described in the book for builds by cargo.
     outside::patch(&robot);
     let (passed, message) = conformance(&robot);
     assert!(passed, "{message}");

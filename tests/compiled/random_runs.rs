@@ -1,5 +1,5 @@
-//! Random plans on the simulated robot with each body and on both emulated robots. The emitted plans of a target are
-//! one program, which is built once.
+//! Tests that random plans, loaded from their text and as executables, behave equally on the simulated robot with each
+//! body and on both emulated robots. The emitted plans for a target are one program, which is built once.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -52,7 +52,8 @@ fn random_plans_run_as_their_executables_do() {
     });
 }
 
-/// Runs the plan of this number in every way, from its text and in the programs of the targets.
+/// Runs the plan with this number on every target, loaded from its text and in the target's program, and compares the
+/// results.
 fn compare(folder: &Path, number: usize, programs: &[PathBuf; 3]) {
     for (name, program) in TARGETS.into_iter().zip(programs) {
         let emitted = || {
@@ -75,12 +76,13 @@ fn compare(folder: &Path, number: usize, programs: &[PathBuf; 3]) {
     }
 }
 
-/// Name of the program with the plans of a target.
+/// Returns the name of the program with the plans for a target.
 fn program(name: &str) -> String {
     format!("random_plans_{name}")
 }
 
-/// Builds the programs with these plans: `main` is what mdlec writes for each, with the choice of one.
+/// Builds the programs with these plans. Their `main` is like that of an emitted executable, but selects one of the
+/// plans.
 fn build(folder: &Path, texts: &[String]) {
     let package = folder.join("package");
     let path = |folder: &str| root().join(folder).display().to_string();
@@ -133,7 +135,7 @@ ARMS        _ => ExitCode::from(100),
 }
 "#;
 
-/// The emitted Rust of a plan for a target.
+/// Returns the emitted Rust of a plan for a target.
 fn emitted(text: &str, name: &str) -> String {
     let alphabet = golden::alphabet(Some(name));
     let (sources, source) = golden::sources(&TextFile { path: FILE.to_owned(), text: text.to_owned() });

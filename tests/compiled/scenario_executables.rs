@@ -1,5 +1,5 @@
-//! Executables of scenarios: `mdlec SCENARIO.toml --target sim` gives a program that does what `mdle run SCENARIO.toml`
-//! does, without any other file.
+//! Tests executables of scenarios: `mdlec SCENARIO.toml --target sim` builds a program that needs no other file and
+//! behaves like `mdle run SCENARIO.toml`.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -13,8 +13,8 @@ use std::process::Command;
 use mdle_tests::elf::sections;
 use mdle_tests::executable::{folder, mdle, run_mdlec};
 
-/// Robots that name a file of every kind: a world, plans that use a plan, a path that is replayed and recorded, and a
-/// plan that is sent.
+/// Robots that refer to files of every kind: a world, plans that use a plan, a path that is replayed and recorded, and
+/// a plan that is sent.
 const SCENARIO: &str = "world = \"square.toml\"
 seed = 3
 timeout = \"20s\"
@@ -48,7 +48,7 @@ to = \"bob\"
 file = \"sent.mdle\"
 ";
 
-/// Files of the scenario: names in its folder, and texts.
+/// Files of the scenario, each with its path in the scenario's folder and its text.
 const FILES: [(&str, &str); 7] = [
     ("two.toml", SCENARIO),
     ("square.toml", "[[wall]]\npoints = [[-3, -3], [5, -3], [5, 3], [-3, 3], [-3, -3]]\n"),
@@ -59,7 +59,7 @@ const FILES: [(&str, &str); 7] = [
          { Ada (bumper OR wait 15s) (Atom (null) path(lane)) (Atom (rendezvous bob OR wait 2) stop) Turned Ahead }\n\
          { Bob (bumper OR wait 15s) (Atom (wait 2) (go 10 0)) (Atom (rendezvous ada) stop) Ahead }\n",
     ),
-    // The file that both use has two names.
+    // Both files use `turned.mdle`, by different paths.
     (
         "shared/ahead.mdle",
         "use \"../plans/../plans/turned.mdle\"\n\
@@ -70,7 +70,7 @@ const FILES: [(&str, &str); 7] = [
     ("sent.mdle", "{ Sent (wait 4) (Atom (null) go(-5 0.2)) }\n"),
 ];
 
-/// Returns a folder with the scenario in its folder `scenes`.
+/// Returns a folder that contains the scenario in the folder `scenes`.
 fn prepared(test: &str) -> PathBuf {
     let folder = folder(test);
     for (name, text) in FILES {
@@ -81,10 +81,10 @@ fn prepared(test: &str) -> PathBuf {
     folder
 }
 
-/// Output and exit status of a program.
+/// Standard output, standard error and exit status of a program.
 type Outcome = (String, String, Option<i32>);
 
-/// Runs a program, which is called `mdle`, with these arguments.
+/// Runs a program under the name `mdle` with these arguments.
 fn run(program: &Path, folder: &Path, arguments: &str) -> Outcome {
     let mut command = Command::new(program);
     let arguments = arguments.split(' ');
@@ -93,13 +93,13 @@ fn run(program: &Path, folder: &Path, arguments: &str) -> Outcome {
     (out, err, output.status.code())
 }
 
-/// Runs `mdlec` with these arguments; returns its messages and its exit status.
+/// Runs `mdlec` with these arguments. Returns its messages and its exit status.
 fn built(folder: &Path, arguments: &str) -> (String, Option<i32>) {
     let output = run_mdlec(folder, &arguments.split(' ').collect::<Vec<_>>());
     (String::from_utf8(output.stderr).unwrap(), output.status.code())
 }
 
-/// Returns the contents of all files in a folder and below.
+/// Returns the contents of all files in a folder and its subfolders.
 fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -114,7 +114,8 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     files
 }
 
-/// Builds the executable of a scenario, and returns it in a folder in which nothing else is.
+/// Builds the executable of a scenario, and moves it away from the scenario's files. Returns its path, and an empty
+/// folder to run it in.
 fn alone(folder: &Path, scenario: &str) -> (PathBuf, PathBuf) {
     let (messages, status) = built(folder, &format!("{scenario} --target sim -o program"));
     assert_eq!(status, Some(0), "{messages}");

@@ -40,7 +40,7 @@ fn message(output: &Output) -> (Option<i32>, String) {
 
 #[test]
 fn the_alphabets_of_this_repository_are_bound() {
-    // The rover is bound in a folder of its own, below.
+    // The test below binds the rover, in its own folder.
     let own = files(&["alphabet.mdle"]).into_iter().filter(|file| !file.path.starts_with("tests/rover/"));
     let own: Vec<_> = own.collect();
     assert!(own.len() >= 2 && own.iter().any(|file| file.path == "atoms/alphabet.mdle"), "{own:?}");

@@ -1,5 +1,5 @@
-//! Tests the names in an emitted file and in a bound alphabet: no name hides another one, whatever the names of plans
-//! and quarks are.
+//! Tests the names in an emitted file and in bindings of an alphabet: no name hides another one, whatever plans and
+//! quarks are called.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -35,7 +35,7 @@ fn a_quark_may_be_called_as_any_constant_of_the_file_is() {
     let constants = |rust: &str| {
         let declared = rust.split(" const ").skip(1).filter_map(|constant| constant.split_once(": "));
         let names = declared.map(|(name, _)| name.to_owned());
-        // `const fn` is none.
+        // `const fn` does not declare a constant.
         names.filter(|name| !name.contains('(')).collect::<Vec<_>>()
     };
     let own = constants(&emitted("{ Main (Atom (wait 1) idle) }"));
@@ -50,10 +50,9 @@ fn a_quark_may_be_called_as_any_constant_of_the_file_is() {
     assert_eq!(all.len(), 2 * own.len() + 1, "{all:?}");
 }
 
-/// Returns the names that a file gives to its functions, arguments and variables, as far as a scope could have the same
-/// name.
+/// Returns the names of functions, arguments and variables in a file that a scope could have as well.
 fn names_of_its_own(rust: &str) -> Vec<&str> {
-    // Functions further in are methods, which hide nothing.
+    // More deeply indented functions are methods, which hide no other name.
     let functions = rust.lines().filter_map(|line| line.strip_prefix("    fn ")?.split('(').next());
     let arguments = rust.split("fn ").skip(1).filter_map(|function| function.split_once('(')?.1.split(')').next());
     let arguments =
@@ -85,16 +84,15 @@ fn code(rust: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the types in a file, and names that are written like types, if they occur without the path to which they
-/// belong.
+/// Returns the names of types in a file, and other names in the same style, where they occur without a path.
 fn types(code: &str) -> BTreeSet<&str> {
     let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
-    // What is written large is a constant.
+    // A word in capital letters only is a constant.
     let is_type = |word: &str| {
         word.starts_with(|letter: char| letter.is_ascii_uppercase())
             && word.contains(|letter: char| letter.is_lowercase())
     };
-    // Where it is looked for is said before it, or it is a type of the trait's.
+    // A path precedes the name, or it is an associated type of the trait.
     let is_found_elsewhere = |before: &str| before.ends_with("::") || before.ends_with("type ");
     let mut types = BTreeSet::new();
     let mut place = 0;
@@ -110,7 +108,7 @@ fn types(code: &str) -> BTreeSet<&str> {
 #[test]
 fn a_plan_may_be_called_as_any_type_that_its_file_uses() {
     let code = code(&emitted("{ Main (Atom (a) seek)^2 }"));
-    // Variants are written with their enum everywhere else.
+    // Elsewhere, variants are always written with their enum.
     let (start, rest) = code.split_once("enum Running {").expect("the laws");
     let code = format!("{start} Running {}", rest.split_once('}').expect("their end").1);
     let types = types(&code);

@@ -5,8 +5,8 @@
 use mdle_compiler::rust::{Shape, bind};
 use mdle_tests::emission::{alphabet, emitted, emitted_as, emitted_for};
 
-/// Returns the text without white space, and without a comma after the last argument, so that line breaks have no
-/// effect on comparisons.
+/// Returns the text without white space and without trailing commas of arguments, so that line breaks do not affect
+/// comparisons.
 fn one_line(rust: &str) -> String {
     rust.split_whitespace().collect::<String>().replace(",)", ")")
 }
@@ -85,7 +85,7 @@ fn what_never_fires_is_false_among_others() {
 fn a_plan_with_after_has_a_memory_in_its_rows() {
     for shape in [Shape::Code, Shape::Rows] {
         let rust = dense_as(shape, "{ Main (a OR RISING b) (Atom (wait 1) idle) }");
-        // The operands of the plan's OR, then the one of RISING.
+        // In the table of operands, that of RISING follows the two of the plan's OR.
         for part in ["Rising(0,2)", "InRows::remembering(", "fnleave(", "fnsettle("] {
             assert!(rust.contains(part), "{part} in {rust}");
         }

@@ -1,10 +1,10 @@
-//! Asserts that all machines print a trace that was written by hand from the rules.
+//! Asserts that all machines print a trace that was derived from the rules by hand.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_compiler::trace::Script;
 use mdle_tests::pipeline::{Machines, compile};
 
-/// Reports of a turn: the time in seconds, the interrupts that have fired, and the laws that have completed, both
+/// Reports of a turn: the time in seconds, the interrupts that have fired, and the laws that have completed. Names are
 /// separated by commas.
 pub(crate) type Turn = (f64, &'static str, &'static str);
 

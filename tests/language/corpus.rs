@@ -1,4 +1,5 @@
-//! Tests that every text that fuzzing has found, and every plan of this repository, has the properties of all texts.
+//! Tests that every text of the fuzzing corpus, and every plan of this repository, has the properties that any text
+//! must have.
 //!
 //! libFuzzer runs the same functions (`tests/fuzz`).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
@@ -56,8 +57,8 @@ fn texts_of_the_benchmarks_have_no_errors() {
     }
 }
 
-/// Returns the inputs of robots' lines that fuzzing has found, and long inputs that could make a reader keep more bytes
-/// than it needs.
+/// Returns the inputs of robots' lines from the fuzzing corpus, and long inputs that could make a reader keep more
+/// bytes than it needs.
 fn lines() -> Vec<Vec<u8>> {
     let kept = fs::read_dir(root().join("tests/fuzz/lines")).unwrap();
     let kept = kept.map(|entry| fs::read(entry.unwrap().path()).unwrap());

@@ -33,7 +33,7 @@ fn removing_degeneracy_and_writing_loops_out_commute_and_change_no_trace() {
         let mut chance = Chance::new(2_000_000 + seed);
         let text = RandomPlan::new(&mut chance, 12, false).to_string();
         let script = script(&mut chance, 12);
-        // Loops in loops in loops can make too many states.
+        // Nested loops can lead to too many states.
         let Ok(compiled) = compile(&text) else { continue };
         if compiled.machine.states() > STATES {
             continue;
@@ -48,8 +48,8 @@ fn removing_degeneracy_and_writing_loops_out_commute_and_change_no_trace() {
     assert!(seen.tried > plans / 10 * 9 && seen.both > plans / 10, "{seen:?}");
 }
 
-/// Checks the properties for a plan. Returns `true` twice if the plan repeats interrupts, and if it has loops to
-/// expand.
+/// Checks the properties for a plan. Returns two flags: `true` if the plan repeats interrupts, and `true` if it has
+/// loops to expand.
 fn hold(compiled: &Compiled, script: &Script, text: &str) -> (bool, bool) {
     let Compiled { plan, nondegenerate, .. } = compiled;
     let expanded = Plan { root: written_out(&plan.root), quarks: plan.quarks.clone() };
@@ -57,7 +57,7 @@ fn hold(compiled: &Compiled, script: &Script, text: &str) -> (bool, bool) {
     let other_way = expand(nondegenerate).unwrap();
     assert_eq!(one_way.plan().numbered(), other_way.plan().numbered(), "{text}");
     assert_eq!(one_way, other_way, "{text}");
-    // Every copy of an interrupt is warned of in one message.
+    // The copies of an interrupt in an expanded loop cause a single warning.
     assert_eq!(warnings, remove_degeneracy(plan.clone()).1, "{text}");
     let (again, warnings) = remove_degeneracy(nondegenerate.plan().clone());
     assert_eq!((&again, &*warnings), (nondegenerate, &[][..]), "{text}");
@@ -77,7 +77,7 @@ fn written_out(scope: &Scope) -> Scope {
     Scope { body, ..scope.clone() }
 }
 
-/// Appends an element in which all finite loops are expanded.
+/// Appends an element to `all`, with all its finite loops expanded.
 fn write_out(node: &Node, all: &mut Vec<Node>) {
     match node {
         Node::Atom(_) => all.push(node.clone()),
@@ -91,7 +91,7 @@ fn write_out(node: &Node, all: &mut Vec<Node>) {
             for _ in 0..counted.times.unwrap() {
                 counted.body.iter().for_each(|node| write_out(node, all));
             }
-            // What ends with the loop ends with its last element.
+            // The labels of the loop go to its last element, which ends together with the loop.
             let marks = match all.last_mut().unwrap() {
                 Node::Atom(atom) => &mut atom.marks,
                 Node::Scope(scope) => &mut scope.marks,

@@ -13,11 +13,11 @@ use mdle_tests::executable::{folder, run_mdlec, run_mdlec_reading};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::repository::{files, root};
 
-/// A plan in a bad layout; `LAID_OUT` is the same plan in the canonical layout.
+/// A plan in a bad layout. `LAID_OUT` is the same plan in the canonical layout.
 const ODD: &str = "{P(bumper)\n(Atom(wait 1 or bumper)stop)// one\r\n\n\n(Atom (wait 2) stop)\n}";
 const LAID_OUT: &str = "{ P (bumper)\n  (Atom (wait 1 OR bumper) stop)    // one\n\n  (Atom (wait 2) stop)\n}\n";
 
-/// Returns the tree of a text, without places.
+/// Returns the tree of a text, without source positions.
 fn tree(text: &str) -> String {
     let arena = Arena::new();
     let (file, found) = parse(SourceId(0), text, &arena);
@@ -25,8 +25,8 @@ fn tree(text: &str) -> String {
     outline(&file)
 }
 
-/// Returns the text with each space and line break replaced by random separators, and the number of comments among
-/// them. The comments are numbered from 0.
+/// Returns the text with a random separator in place of each space and line break, and the number of comments in the
+/// separators. The comments are numbered from 0.
 fn disordered(text: &str, chance: &mut Chance) -> (String, usize) {
     let (mut disordered, mut comments) = (String::new(), 0);
     for character in text.chars() {
@@ -58,7 +58,7 @@ fn disordered(text: &str, chance: &mut Chance) -> (String, usize) {
     (disordered, comments)
 }
 
-/// Returns the numbers of the comments, in order.
+/// Returns the numbers of the comments in a text, in order.
 fn numbers(text: &str) -> Vec<usize> {
     text.split('#').skip(1).map(|rest| rest.split('.').next().unwrap().parse().unwrap()).collect()
 }

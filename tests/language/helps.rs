@@ -13,7 +13,7 @@ use mdle_tests::texts;
 
 static EVERYTHING: LazyLock<Alphabet> = LazyLock::new(|| alphabet(None));
 
-/// Returns the diagnostics of a text, and the identifier of the file that contains it.
+/// Returns the diagnostics of a text, and the identifier of its file.
 fn judged(text: &str) -> (SourceId, Vec<Diagnostic>) {
     let mut sources = Sources::default();
     for file in builtin::alphabets() {
@@ -28,8 +28,8 @@ fn all_texts() -> BTreeSet<String> {
     texts.filter(|text| text.len() < 20_000).collect()
 }
 
-/// Returns the place of a diagnostic after an edit whose replacement has the length `length`. If the place touches the
-/// edit, it is the place of the replacement.
+/// Returns the range of a diagnostic after an edit whose replacement has the length `length`. If the range touches the
+/// edit, returns the range of the replacement.
 fn moved(place: &Range<usize>, edit: &Range<usize>, length: usize) -> Range<usize> {
     if place.end <= edit.start && place.start < edit.start {
         return place.clone();
@@ -41,8 +41,7 @@ fn moved(place: &Range<usize>, edit: &Range<usize>, length: usize) -> Range<usiz
     edit.start..edit.start + length
 }
 
-/// Returns a diagnostic that remains after an edit although the edit should have removed it, with the edited text;
-/// `None` if there is none.
+/// Returns a diagnostic that the edit should have removed but did not, with the edited text; `None` if there is none.
 fn remaining(
     text: &str,
     id: SourceId,
@@ -58,7 +57,7 @@ fn remaining(
     let is_same = |found: &Diagnostic| {
         let here = found.span().map_or(0, |span| span.within(id).start);
         let is_here = (place.start..place.end.max(place.start + 1)).contains(&here);
-        // Where it was the only error, none is left.
+        // If the diagnostic was the only error of its kind, the edited text must have no such error.
         let is_new = is_only && found.code.is_notation() && found.code != Code::E0108;
         found.code == diagnostic.code && is_here && (found.message == diagnostic.message || !place.is_empty()) || is_new
     };
@@ -74,7 +73,7 @@ fn edits_end_the_defect() {
         let (id, found) = judged(&text);
         let notation = found.iter().filter(|found| found.code.is_notation()).count();
         for diagnostic in &found {
-            // A bracket that finds its partner may let other errors be seen.
+            // When a bracket gets its partner, further errors may appear.
             let is_only = diagnostic.code.is_notation() && diagnostic.code != Code::E0103 && notation == 1;
             for edit in diagnostic.help.iter().filter_map(|help| help.edit.as_ref()) {
                 edits += 1;
@@ -126,7 +125,7 @@ fn quoted_examples_can_be_read() {
                     && part.contains(' ')
                     || part.starts_with("{ ")
             };
-            // `<v>` stands for what only the writer knows.
+            // `<v>` is a placeholder for a value that only the author knows.
             quoted.extend(parts.filter(is_example).filter(|part| !part.contains("(<")).map(str::to_owned));
         }
     }

@@ -1,5 +1,5 @@
 //! Tests the rules of loops (docs/src/reference/semantics.md, 6) and of the limit of a turn
-//! (docs/src/reference/semantics.md, 5.5), each by a minimal plan.
+//! (docs/src/reference/semantics.md, 5.5), each with a minimal plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

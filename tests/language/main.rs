@@ -1,4 +1,4 @@
-//! Tests of the language: the meaning of plans, each rule by a minimal plan, and texts in every notation.
+//! Tests of the language: each rule for the meaning of plans with a minimal plan, and texts in every notation.
 
 mod assert_trace;
 mod corpus;

@@ -1,13 +1,13 @@
 //! Tests the rules of RISING (docs/src/reference/semantics.md, 2.2) and of `after` (docs/src/reference/semantics.md,
-//! 2.3), each by a minimal plan.
+//! 2.3), each with a minimal plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use super::assert_trace::{Turn, assert_trace};
 use mdle_compiler::trace::COMPLETED;
 
-/// Returns a line of a trace. `fired` contains the transitions, each as the state that was left, the level, and the
-/// condition. If the operands that have fired are not the whole condition, they follow it, as in `a OR b | b`.
+/// Returns a line of a trace. `fired` contains the transitions, each with the state that was left, the level, and the
+/// condition. The operands that have fired follow the condition if they are only a part of it, as in `a OR b | b`.
 fn line(turn: usize, t: &str, state: u64, law: Option<&str>, fired: &[(u64, usize, &str)]) -> String {
     let law = law.map_or("null".to_owned(), |law| format!("{law:?}"));
     let fired = fired.iter().map(|(from, level, by)| {
@@ -86,7 +86,7 @@ fn rising_in_rising_and_under_not() {
 
 #[test]
 fn an_operand_is_remembered_whatever_the_others_say() {
-    // In the first turn neither `c` nor `d` has fired, and what stands beside them is read all the same.
+    // In the first turn neither `c` nor `d` has fired, but the operands of RISING beside them are evaluated anyway.
     assert_turns(
         "{ Main (Atom (c AND RISING b OR d AND RISING a) idle) (Atom (NOT (e OR RISING b)) drift) (Atom (null) seek) }",
         &[("", ""), ("b", ""), ("b, c, e", ""), ("e", ""), ("b", ""), ("", "")],
@@ -95,7 +95,7 @@ fn an_operand_is_remembered_whatever_the_others_say() {
             (1, Some("idle"), &[]),
             (2, Some("drift"), &[(1, 1, "c AND RISING b OR d AND RISING a | c, RISING b")]),
             (2, Some("drift"), &[]),
-            // `e` had fired in the turn in which `b` had not.
+            // The memory of RISING was set in the turn before, in which `b` had not fired, although `e` had.
             (2, Some("drift"), &[]),
             (3, Some("seek"), &[(2, 1, "NOT (e OR RISING b)")]),
         ],
@@ -140,9 +140,9 @@ fn after_tells_which_operand_ended_an_element_the_first_as_written() {
 fn an_element_ends_by_completion_and_with_its_last_element_too() {
     let plan = "{ Main L: { P (b) M: (Atom (a OR c) seek) } (Atom (after L b OR after M a) idle) (Atom (after L AND after M) drift) \
                 (Atom (null) climb) }";
-    // Completed: both have ended, neither by an operand of its interrupt.
+    // By completion, both elements end, neither of them by an operand of its own interrupt.
     assert_turns(plan, &[("", "seek")], &[(2, Some("idle"), &[(1, 2, "completed")])]);
-    // The operand of the inner one is the cause of its end, and not of the outer one's.
+    // The operand of the inner interrupt is the cause of the inner element's end, but not of the outer element's.
     assert_turns(
         plan,
         &[("a", "")],
@@ -156,7 +156,7 @@ fn an_element_ends_by_completion_and_with_its_last_element_too() {
             ],
         )],
     );
-    // Left by the scope around it: it has not ended.
+    // The inner element is left by the enclosing scope, so it has not ended.
     assert_turns(
         plan,
         &[("b", "")],
@@ -180,7 +180,8 @@ fn a_loop_ends_with_its_last_pass_and_a_string_with_its_last_element() {
 
 #[test]
 fn every_transition_that_ends_labelled_elements_replaces_the_record() {
-    // What ends without a label leaves it as it is, and a label that nobody asks for does not.
+    // The record is replaced neither by the end of an element without a label, nor by that of a label that no `after`
+    // reads.
     assert_turns(
         "{ Main s1: (Atom (a) idle) (Atom (b) idle) (Atom (NOT after s1) drift) s2: (Atom (c) seek) (Atom (after s1) climb) }",
         &[("a, b", ""), ("", ""), ("c", "")],
@@ -225,7 +226,7 @@ fn each_use_of_a_plan_has_a_record_that_is_empty_when_it_is_entered() {
             (5, Some("climb"), &[]),
         ],
     );
-    // Nothing but its own record lets the second use go on.
+    // Each use of a plan has its own record: only this record lets the second use continue.
     assert_turns(
         "{ Main ExecPlan 2 P } { P (Atom (after s OR b) drift) s: (Atom (a) idle) }",
         &[("b, a", ""), ("", "")],

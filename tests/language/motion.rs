@@ -1,5 +1,5 @@
 //! Tests the rules of `way` (docs/src/reference/semantics.md, 3.3), of `FRAME here` (docs/src/reference/semantics.md,
-//! 3.4) and of `stuck` (docs/src/reference/semantics.md, 3.5), each by a minimal plan.
+//! 3.4) and of `stuck` (docs/src/reference/semantics.md, 3.5), each with a minimal plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -109,7 +109,8 @@ fn a_frame_here_is_taken_anew_in_each_pass() {
         r#"{"t":2,"heading":-170,"fired":["b"]}"#,
         r#"{"t":3,"heading":20,"fired":["a"]}"#,
     ];
-    // Around the loop or before its passes is the same; a string in parentheses is entered once.
+    // `FRAME here` before a loop is taken in each pass, as before the string of a pass. Before a string in parentheses
+    // that contains the loop, it is taken once, because this string is entered once.
     for (plan, again) in [
         ("{ Main FRAME here ((Atom (a) idle) (Atom (b) drift))^2 }", "-170.0"),
         ("{ Main FRAME here ExecPlan 2 { (Atom (a) idle) (Atom (b) drift) } }", "-170.0"),
@@ -137,7 +138,8 @@ fn a_frame_here_is_taken_anew_in_each_pass() {
 
 #[test]
 fn a_string_or_a_pass_in_a_frame_here_is_a_scope() {
-    // Level 2: the plan, the string, the atom. An atom and a behavior are scopes already.
+    // The levels are the plan (0), the string (1) and the atom (2). An atom or a behavior in a frame adds no scope,
+    // because it is a scope already.
     assert_trace(
         "{ Main FRAME here ((Atom (a) idle)) FRAME here (Atom (b) drift) FRAME here { P (c) (Atom (null) idle) } }",
         &[r#"{"t":0}"#, r#"{"t":1,"fired":["a"]}"#, r#"{"t":2,"fired":["b"]}"#, r#"{"t":3,"fired":["c"]}"#],

@@ -6,7 +6,7 @@ use std::fs;
 use mdle_tests::golden::judge;
 use mdle_tests::repository::{TextFile, root};
 
-/// Listings, each with its first words, the name of its file, and the number of its repeated interrupts.
+/// Listings, each with its first words, the name of its file, and its number of repeated interrupts.
 const LISTINGS: [(&str, &str, usize); 5] = [
     (r"$\Gamma_{lab2}^{lab1} = \{$", "lab2_to_lab1", 0),
     (r"$\Gamma_{lab}^{office} = \{$", "lab1_to_office", 0),
@@ -24,8 +24,8 @@ fn cut<'p>(paper: &'p str, first: &str) -> &'p str {
     block.trim_matches('\n')
 }
 
-/// Returns the text of the paper if it is available beside the checkout. The listings are in `plans/paper/` in any
-/// case.
+/// Returns the text of the paper if it is available beside the checkout; the listings alone are always available in
+/// `plans/paper/`.
 fn paper() -> Option<String> {
     let folder = root().join("../shared/paper");
     let file = fs::read_dir(folder).ok()?.find_map(|entry| Some(entry.ok()?.path()).filter(|path| path.is_file()))?;
@@ -41,10 +41,10 @@ fn listings_are_accepted_as_printed() {
         let (compiled, message) = judge(&TextFile { path, text: text.clone() }, None);
         assert_eq!(compiled.len(), 1, "{message}");
         assert_eq!(message.matches("warning[W0101]").count(), repeated, "{message}");
-        // A forward speed of `0.5` is half a centimetre a second, and cannot be meant.
+        // A forward speed of `0.5` is half a centimetre per second, which cannot be intended.
         let slow = message.matches("warning[W0401]: `v` of `go` is 0.5 cm/s").count();
         assert_eq!(slow, text.matches("go(0.5 0)").count(), "{message}");
-        // `sync` has no timer beside it in the paper.
+        // In the paper, `sync` is used without a timer.
         let waits = message.matches("warning[W0209]").count();
         assert_eq!(waits, text.matches("(Atom (sync ").count() + text.matches("(Atom ((sync ").count(), "{message}");
         assert_eq!(message.matches("[W").count(), repeated + slow + waits, "{message}");

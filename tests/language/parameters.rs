@@ -1,4 +1,4 @@
-//! Tests the rules of plans with parameters (docs/src/reference/language.md, 3.4), each by a minimal plan.
+//! Tests the rules of plans with parameters (docs/src/reference/language.md, 3.4), each with a minimal plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -1,4 +1,4 @@
-//! Tests the rules of comparisons over signals and of `t` (docs/src/reference/semantics.md, 2.4), each by a minimal
+//! Tests the rules of comparisons of signals and of `t` (docs/src/reference/semantics.md, 2.4), each with a minimal
 //! plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]

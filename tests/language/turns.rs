@@ -1,4 +1,4 @@
-//! Tests the rules of turns, time and completion (docs/src/reference/semantics.md, 2 to 5), each by a minimal plan.
+//! Tests the rules of turns, time and completion (docs/src/reference/semantics.md, 2 to 5), each with a minimal plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

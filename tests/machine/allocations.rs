@@ -1,4 +1,4 @@
-//! Tests that a turn in which nothing is loaded and no request arrives allocates no memory: neither the plan, nor
+//! Tests that a turn in which nothing is loaded and no request arrives allocates no memory: neither in the plan, nor in
 //! modules, the turn break or safety rules.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -25,7 +25,8 @@ const PLAN: &str = "{ Rounds (null)\n  ((Atom (wait 3s OR way > 2m) (go 10 0.2))
 /// Safety rules that sometimes limit the robot's speed and sometimes hold the robot.
 const RULES: &str = "[limits]\nspeed = \"15cm/s\"\nacceleration = \"1m/s2\"\n\n[contact]\nthen = \"hold forward\"\n\n\
                      [guards.far]\nwhen = \"theta > 30deg AND bearing(ears module) > 20deg\"\nthen = \"hold\"\n";
-/// Number of turns after which all memory should have been allocated; the same number of turns is counted afterwards.
+/// Number of turns at the start in which memory may be allocated. In the same number of turns after them, allocations
+/// are counted.
 const TURNS: u64 = 400;
 
 thread_local! {
@@ -33,7 +34,7 @@ thread_local! {
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// The allocator of the system, with a count of the allocations.
+/// The system's allocator, with a count of the allocations.
 struct Counter;
 
 #[allow(unsafe_code, reason = "an allocator is unsafe by its interface; all calls go to that of the system")]
@@ -111,8 +112,8 @@ fn rules() -> (Rules, Conditions<Alphabet>) {
     (rules, conditions.expect("conditions"))
 }
 
-/// Returns the turns that allocated memory, without the first [`TURNS`] turns of the run, and the number of transitions
-/// in the other turns.
+/// Returns the turns that allocated memory, except the first [`TURNS`] turns of the run, and the number of transitions
+/// in the counted turns.
 fn turns_that_allocate(time: Time) -> (Vec<u64>, usize) {
     let terms = RunTerms { time, period: PERIOD, request: StopRequest::default(), microphones: Microphones::default() };
     let (rules, conditions) = rules();

@@ -1,5 +1,5 @@
-//! Tests `mdlec analyze`: random plans are compared with brute force, in which nothing may happen that the analysis
-//! excludes; plans in `plans/` have expected results; and the size of a machine is compared with rustc.
+//! Tests `mdlec analyze`: random plans are explored by brute force, which must find nothing that the analysis excludes;
+//! plans in `plans/` have expected results; and the size of a machine is compared with that of the compiled Rust.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -34,11 +34,10 @@ mod recorded {
 
 /// Number of random plans.
 const PLANS: u64 = 350;
-/// Maximum number of combinations of quark values of a plan. If there are more combinations, this many random ones are
-/// tried.
+/// Maximum number of combinations of quark values that are tried for a plan. If a plan has more, this number of random
+/// combinations is tried.
 const CHOICES: usize = 16;
-/// Maximum number of situations of a plan, first if all combinations of quark values are tried, and then if they are
-/// not.
+/// Maximum number of situations of a plan: if all combinations of quark values are tried, and if only some are tried.
 const SITUATIONS: [usize; 2] = [1000, 80];
 /// Steps between turns, in nanoseconds: zero, a step shorter than the shortest timer, the lengths of timers and
 /// windows, and a step longer than all timers.
@@ -50,14 +49,14 @@ struct Count {
     plans: usize,
     turns: usize,
     over: usize,
-    /// Plans all of whose situations were tried.
+    /// Number of plans for which every situation was tried.
     whole: usize,
-    /// Atoms of these plans. `idle` counts those that never run, and `predicted` those that the analysis predicts never
-    /// to run.
+    /// Number of atoms of these plans. `idle` counts the atoms that never run, and `predicted` those of them for which
+    /// the analysis predicts this.
     atoms: usize,
     idle: usize,
     predicted: usize,
-    /// Operands that never end their scope, as the analysis predicts.
+    /// Number of operands that never end their scope, as the analysis predicts.
     never: usize,
     bounded: usize,
 }
@@ -88,7 +87,7 @@ fn what_analysis_excludes_never_happens() {
     println!("{count:#?}");
     let plans = repeated(PLANS) as usize;
     assert!(count.plans * 10 > plans * 9 && count.turns > plans * 480 && count.over > plans * 10, "{count:?}");
-    // Nearly all that never runs is predicted.
+    // Nearly all atoms that never run are predicted.
     assert!(count.whole * 13 > plans && count.idle * 50 > plans && count.predicted * 10 >= count.idle * 9, "{count:?}");
     assert!(count.never > plans && count.bounded * 4 > plans, "{count:?}");
 }
@@ -171,15 +170,15 @@ impl<'c> Trial<'c> {
         }
     }
 
-    /// Returns `true` if two atoms have the same law and this law completes. In the turns that are tried, either both
-    /// of them complete or neither does.
+    /// Returns `true` if two atoms have the same law and this law completes. In a turn that is tried, such a law
+    /// completes either for both atoms or for neither.
     fn laws_complete_together(&self) -> bool {
         let mut laws = BTreeSet::new();
         let mut completing = self.compiled.machine.atoms().map(|atom| atom.law()).filter(|law| law.completes);
         !completing.all(|law| laws.insert(&law.text))
     }
 
-    /// Checks that a turn does not contradict the analysis.
+    /// Asserts that a turn does not contradict the analysis.
     fn check(&self, explorer: &Explorer<'_>, turn: &Turn, run: &Run) {
         for part in &turn.current {
             let Part::Atom(atom) = self.parts[*part] else { panic!("an atom is current") };
@@ -241,7 +240,7 @@ fn runs_last_as_long_as_analysis_computes() {
             let now = times[turn];
             let message = || format!("seed {seed}, turn {turn} at {now} s\n{text}\n{}", analysis.to_text());
             assert!(fired.len() as u64 <= analysis.transitions, "{}", message());
-            // Nothing is written with more digits than these.
+            // The tolerance covers the rounding of printed times.
             let longest = analysis.longest.seconds.zip(analysis.longest.turns);
             let longest = longest.map(|(seconds, turns)| seconds + turns as f64 * gap + 1e-9);
             assert!(longest.is_none_or(|longest| now <= longest), "{}", message());
@@ -256,7 +255,7 @@ fn runs_last_as_long_as_analysis_computes() {
 }
 
 /// Returns combinations of quark values of a plan, and `true` if these are all combinations. Comparisons of the same
-/// signal are consistent, because each signal has a value.
+/// signal are consistent, because they are computed from a value of the signal.
 fn choices(plan: &Plan, chance: &mut Chance) -> (Vec<QuarkValues>, bool) {
     let is_free = |quark: &Quark| quark.completes || INTERRUPTS.contains(&quark.text.as_str());
     let bits: Vec<usize> = (0..plan.quarks.len()).filter(|number| is_free(&plan.quarks[*number])).collect();
@@ -306,7 +305,7 @@ fn plans_are_analysed_without_a_false_alarm() {
 
 #[test]
 fn the_papers_plans_are_what_the_semantics_say_of_them() {
-    // `bumper` guards these plans, so their atoms lose it, and end by completion only.
+    // `bumper` guards these plans, so it is removed from their atoms, which end by completion only.
     for (path, laws) in
         [("first_robot", ["path lastPath", "Follow robot2"]), ("second_robot", ["Follow robot1", "Follow robot3"])]
     {
@@ -317,7 +316,7 @@ fn the_papers_plans_are_what_the_semantics_say_of_them() {
         }
         assert_eq!(analysis.scopes[0].ended_by, ["bumper"]);
     }
-    // `wait inf` never fires: `align` ends when it is done, and `goAvoid` with a module with the plan alone.
+    // `wait inf` never fires: `align` ends when it completes, and `goAvoid` with a module ends only with the plan.
     let aligned = analysis("plans/paper/lab2_to_lab1.mdle");
     let align: Vec<_> = aligned.atoms.iter().filter(|atom| atom.law.starts_with("align")).collect();
     assert!(align.len() == 2 && align.iter().all(|atom| atom.ended_by == ["completed"]));
@@ -367,7 +366,7 @@ fn assert_bytes<P: mdle_runtime::Plan>(path: &str, plan: &P) {
 fn bytes_are_those_of_the_compiled_machine() {
     assert_bytes("plans/lab_tour.mdle", &recorded::lab_tour::LabTour::new());
     assert_bytes("plans/patrol.mdle", &recorded::patrol::Patrol::new());
-    // What a plan remembers stands in its Rust.
+    // The memories of a plan are an array in its Rust.
     let branching = include_str!("snapshots/machine__golden__rust-branching.snap.rs");
     let memories = analysis("plans/branching.mdle").bytes.memories;
     assert!(memories > 0 && branching.contains(&format!("[false; {memories}]")), "{memories}");

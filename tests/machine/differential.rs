@@ -24,7 +24,7 @@ use mdle_tests::random_script::script;
 /// Number of random plans.
 const PLANS: u64 = 3_400;
 
-/// Counts of events in the runs of random plans, which show that the runs cover everything that should be tested.
+/// Counts of events in the runs of random plans, to check that the runs cover everything that should be tested.
 #[derive(Debug, Default)]
 struct Seen {
     plans: usize,
@@ -35,12 +35,12 @@ struct Seen {
     chains: usize,
     completions: usize,
     repeated: usize,
-    /// Number of transitions that are caused by a condition with RISING; `after` and `compared` count those by `after`
-    /// and by comparisons.
+    /// Number of transitions caused by a condition with RISING. `after` and `compared` count transitions caused by
+    /// `after` and by comparisons.
     rising: usize,
     after: usize,
     compared: usize,
-    /// Number of occurrences of each production of the grammar, and of each unit, in the plans that were run.
+    /// Number of occurrences, in the plans that were run, of each production of the grammar and of each unit.
     productions: Productions,
 }
 
@@ -68,7 +68,7 @@ impl Seen {
 
 #[test]
 fn every_machine_prints_the_same_trace() {
-    // Each seed is by itself, so they are dealt out to the cores.
+    // Seeds are independent, so they are distributed to the cores.
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let seen = std::thread::scope(|scope| {
         let hands: Vec<_> = (0..cores).map(|hand| scope.spawn(move || seeds(hand, cores))).collect();
@@ -96,7 +96,7 @@ const UNMET_UNITS: &[&str] = &["Hz"];
 /// its robots are tested in `robots formation::`.
 const GROUPS: &[&str] = &["Head = \"Group\" \"[\" ArgList? \"]\" Name Params? HeadCondition?", "Head … ArgList?"];
 
-/// Asserts that every production, every optional part, and every unit occurs in some plan.
+/// Asserts that every production, every optional part and every unit occurs in at least one plan.
 fn assert_every_production_is_met(counts: &Productions) {
     let grammar = grammar::productions().into_iter().filter(|production| !production.recovers);
     let productions = grammar.flat_map(|production| [production.options(), vec![production.text]].concat());
@@ -116,7 +116,8 @@ fn seeds(first: usize, step: usize) -> Seen {
     let mut seen = Seen::default();
     for seed in (first as u64..repeated(PLANS)).step_by(step) {
         let mut chance = Chance::new(seed);
-        // Small plans first, so that the first seed to fail is easy to read; a long search takes its time.
+        // Small plans come first, so that the first failing plan is easy to read. Plans with long searches are rare,
+        // because they are slow.
         let long = seed % 400 >= 398;
         let text =
             RandomPlan::new(&mut chance, 2 + (seed as usize) * 20 / (repeated(PLANS) as usize), long).to_string();
@@ -127,12 +128,12 @@ fn seeds(first: usize, step: usize) -> Seen {
     seen
 }
 
-/// Compares the traces of all machines, and of the loaded plan. With `foresight`, the rows of the loaded plan contain
+/// Compares the traces of all machines and of the loaded plan. With `foresight`, the rows of the loaded plan contain
 /// the successors of scopes.
 fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen) {
     let compiled = match compile(text) {
         Ok(compiled) => compiled,
-        // Loops in loops in loops can make too many states.
+        // Nested loops can lead to too many states.
         Err(report) if report.contains("E0501") => {
             seen.refused += 1;
             return;

@@ -1,5 +1,5 @@
-//! Tests plans that are replaced while the robot runs: the time at which the new plan begins, its trial, and the return
-//! to the previous plan.
+//! Tests plans that are replaced while the robot runs: when the new plan begins, its trial, and the return to the
+//! previous plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -48,8 +48,8 @@ impl Run {
         self.engine.plans_mut()
     }
 
-    /// Runs a turn in which this interrupt fires. Returns the number of the plan, the law that is applied, the time at
-    /// which the law's atom began by the clock of its plan, and the number of inputs that the law has computed.
+    /// Runs a turn in which this interrupt fires. Returns, as text, the number of the plan, the applied law, the time
+    /// at which the law's atom began by the clock of its plan, and the number of inputs that the law has computed.
     pub(crate) fn turn(&mut self, interrupt: &str) -> String {
         let bit = INTERRUPTS.iter().position(|known| *known == interrupt);
         let y = Output { fired: bit.map_or(0, |bit| 1 << bit), way: self.way, ..Output::default() };
@@ -74,7 +74,7 @@ impl Run {
         self.turn("")
     }
 
-    /// Runs turns in which no interrupt fires; returns the result of the last one.
+    /// Runs turns in which no interrupt fires, and returns the result of the last one.
     pub(crate) fn turns(&mut self, count: u64) -> String {
         (0..count).map(|_| self.turn("")).last().unwrap()
     }
@@ -117,10 +117,10 @@ fn a_plan_that_is_rolled_back_to_has_lost_no_time() {
     run.plans().replace(loaded(SECOND).unwrap().plan(), When::Now);
     assert_eq!(run.turns(20), "2 drift since 0 input 20");
     run.engine.rollback("asked for").unwrap();
-    // The turn that it would have made at 0.4 s, with its law made anew.
+    // The plan continues with its turn at 0.4 s, with a new law.
     assert_eq!(run.turn(""), "1 climb since 0.4 input 1");
     assert_eq!(run.turns(5), "1 climb since 0.4 input 6");
-    // Its atom ends 1 s after it began.
+    // The atom ends 1 s after it began.
     assert_eq!(run.turn(""), "1 idle since 1 input 1");
     assert_eq!(run.engine.rollback("again"), Err(NoTrial));
     let back = PlanEvent::RolledBack { from: 2, to: 1, why: "asked for".to_owned() };
@@ -132,7 +132,8 @@ fn the_way_of_another_plan_does_not_count() {
     let mut run = Run::of("{ Main (b) (Atom (way >= 1m) seek) (Atom (null) climb) }");
     assert_eq!([run.drive(0), run.drive(300)], ["1 seek since 0 input 1", "1 seek since 0 input 2"]);
     run.plans().replace(loaded(SECOND).unwrap().plan(), When::Now);
-    // The last input of the plan leads to the first output of the other one.
+    // The distance until the first output of the new plan still belongs to the previous plan, whose last input caused
+    // it.
     assert_eq!([run.drive(300), run.drive(5000)], ["2 drift since 0 input 1", "2 drift since 0 input 2"]);
     run.engine.rollback("asked for").unwrap();
     assert_eq!([run.drive(5000), run.drive(399)], ["1 seek since 0.2 input 1", "1 seek since 0.2 input 2"]);

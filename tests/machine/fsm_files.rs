@@ -1,5 +1,5 @@
-//! Tests FSM files of endless loops. Their moves were written by hand from the rules (docs/src/reference/semantics.md,
-//! 8.3).
+//! Tests FSM files of endless loops. The expected transitions were derived by hand from the rules
+//! (docs/src/reference/semantics.md, 8.3).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_compiler::fsm::{FsmFile, fsm_file};
@@ -13,7 +13,7 @@ fn file(plan: &str) -> FsmFile {
     fsm_file(&compiled[0].nondegenerate).unwrap()
 }
 
-/// Asserts the states in the FSM file of a plan, and a line for each interrupt, with its name, text and moves.
+/// Asserts the states in the FSM file of a plan, and a line for each interrupt, with its name, text and transitions.
 fn assert_moves(plan: &str, states: &[&str], expected: &[&str]) {
     let file = file(plan);
     assert_eq!(file.states, states, "{plan}");
@@ -34,7 +34,7 @@ fn the_last_of_a_loop_without_end_goes_to_its_first() {
             "x1 = bumper: a1→end a2→end a3→end a4→end",
             "x2 = wait 1: a1→a2",
             "x3 = wait 2: a2→a3",
-            // B ends with the loop: behind it the next pass begins.
+            // B ends together with a pass of the loop: the next pass begins.
             "x4 = atIsection 1000: a3→a2 a4→a2",
             "x5 = wait 3: a3→a4",
             "x6 = sync ada OR wait 4: a4→a2",
@@ -56,7 +56,7 @@ fn a_finite_loop_in_one_without_end_is_written_out() {
             "x5 = wait 2: a3→a4",
             "x6 = wait 6: a4→a5",
             "x7 = wait 6: a5→a1",
-            // Nothing leads here.
+            // No transition leads to this atom.
             "x8 = wait 5: a6→end",
             "completed = completed: a4→a5 a5→a1",
         ],
@@ -70,7 +70,7 @@ fn a_scope_keeps_endless_loops_apart() {
         &["a1", "a2", "end"],
         &[
             "x1 = bumper: a1→end a2→end",
-            // B is inside the outer loop only, its last atom inside both.
+            // B is inside the outer loop only; its last atom is inside both loops.
             "x2 = wait 9: a1→a1 a2→a1",
             "x3 = wait 1: a1→a2",
             "x4 = wait 2: a2→a2",

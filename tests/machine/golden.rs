@@ -73,7 +73,7 @@ fn machines_of_what_the_simulator_runs_and_why_it_does_not_run_the_rest() {
 #[test]
 fn rust_for_the_simulator() {
     for file in plans() {
-        // A group has a plan for each of its robots.
+        // A group has a separate plan for each of its robots.
         let emit = |compiled: &Compiled| rust(&file, compiled, Shape::of(&compiled.machine));
         let text: String = judge(&file, Some("sim")).0.iter().map(emit).collect();
         if !text.is_empty() {

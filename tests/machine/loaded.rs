@@ -1,4 +1,4 @@
-//! Tests plans that are loaded at run time: the memory that they own, and the plans that are refused.
+//! Tests plans that are loaded at run time: the memory that they own, and plans that are refused.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

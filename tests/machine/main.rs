@@ -1,4 +1,4 @@
-//! Tests of the state machines of plans: all interpreters agree, and so do files, pictures, analysis and Theorem 1.
+//! Tests of the state machines of plans: all interpreters agree, and so do files, pictures, the analysis and Theorem 1.
 
 mod allocations;
 mod analysis;

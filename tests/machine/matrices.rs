@@ -1,5 +1,6 @@
-//! Tests that matrices that are read back from the output and the files of `--emit matrices` make the same transitions
-//! as the machine `table` (paper, Eqs. 2 to 4), and that the command reports which of the two forms it has chosen.
+//! Tests that the matrices that `--emit matrices` prints or writes, when they are read back, make the same transitions
+//! as the machine `table` (paper, Eqs. 2 to 4), and that the command reports which of the two forms of matrices it has
+//! chosen.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeMap;
@@ -19,7 +20,8 @@ const PLANS: u64 = 140;
 /// Maximum number of states of a plan that is tested, because each matrix is read as a whole.
 const STATES: u64 = 300;
 
-/// A matrix that was read back: its name, its text, the row of the 1 in each column, from 1, and its scopes.
+/// A matrix that was read back: its name, its text, the row of the 1 in each column, with rows numbered from 1, and its
+/// scopes.
 #[derive(Debug)]
 struct Read {
     name: String,
@@ -46,7 +48,7 @@ impl Matrices {
         numbers
     }
 
-    /// Asserts that the product of the matrices of fired interrupts makes the transitions of a trace; returns the
+    /// Asserts that the product of the matrices of the fired interrupts makes the transitions of a trace. Returns the
     /// number of transitions.
     fn follow(&self, trace: &[TraceLine<'_>], combined: bool) -> usize {
         let (mut e, mut count) = (1, 0);
@@ -59,7 +61,7 @@ impl Matrices {
                         && (read.name == "completed") == (*by == COMPLETED)
                 };
                 let read = self.live.iter().find(is_it).unwrap_or_else(|| panic!("turn {turn}: {by} at e{e}"));
-                // Where it is counted once, it may be written otherwise in another place.
+                // With `--combine`, interrupts with different texts share a matrix, which has the text of one of them.
                 assert!(combined || read.text == *by || read.name == "completed", "turn {turn}: {read:?} is not {by}");
                 e = read.rows[e - 1];
                 count += 1;
@@ -74,8 +76,8 @@ fn holds(place: &(usize, usize, usize), state: usize) -> bool {
     (place.1..=place.2).contains(&state)
 }
 
-/// Reads a MatrixMarket coordinate file of a square matrix with a single 1 in each column. Returns the row of the 1 in
-/// each column.
+/// Reads a MatrixMarket coordinate file of a square matrix with exactly one 1 in each column. Returns the row of the 1
+/// in each column.
 fn read_market(text: &str) -> Vec<usize> {
     assert!(text.lines().all(|line| line.len() <= 1024));
     let mut lines = text.lines();
@@ -108,7 +110,7 @@ fn columns(states: usize, ones: impl Iterator<Item = (usize, usize)>) -> Vec<usi
     rows
 }
 
-/// Reads the matrices from the list of files and the files.
+/// Reads the matrices from the list of files and from the files.
 fn read_files(list: &str, files: &BTreeMap<String, String>) -> Matrices {
     let list: Value = serde_json::from_str(list).unwrap();
     let number = |value: &Value| value.as_u64().unwrap() as usize;
@@ -129,7 +131,7 @@ fn read_files(list: &str, files: &BTreeMap<String, String>) -> Matrices {
     Matrices { live: entries("matrices"), never: entries("never") }
 }
 
-/// Reads the matrices from the equation in the paper's notation, which is followed by the meaning of its symbols.
+/// Reads the matrices from the equation in the paper's notation and the explanations of its symbols.
 fn read_equation(text: &str) -> Matrices {
     let (sum, symbols) = text.split_once("where the state is one of\n").unwrap();
     let mut rows = BTreeMap::new();
@@ -155,8 +157,8 @@ fn read_equation(text: &str) -> Matrices {
     matrices
 }
 
-/// Reads a line about a symbol, such as `2  bumper, at e1…e2 of Q (2), e3 (5)`, and takes the matrix of the symbol from
-/// `rows`.
+/// Reads an explanation of a symbol, such as `2  bumper, at e1…e2 of Q (2), e3 (5)`, and takes the matrix of the symbol
+/// from `rows`.
 fn read_symbol(line: &str, rows: &mut BTreeMap<String, Vec<usize>>) -> Read {
     let (symbol, what) = line.split_once(' ').unwrap();
     let (text, places) = what.trim_start().rsplit_once(", at ").unwrap();
@@ -243,9 +245,9 @@ fn matrices_are_printed_or_written_into_a_folder() {
         names(there),
         ["completed.mtx", "matrices.json", "x1.mtx", "x2.mtx", "x3.mtx", "x4.mtx", "x5.mtx", "x6.mtx"]
     );
-    // What an earlier plan left is not there any more; what is not ours stays.
+    // Files of an earlier plan are removed; files that mdlec did not write are kept.
     fs::write(folder.join("written/here/x.mtx"), "mine").unwrap();
-    // Timers of different scopes are never counted once.
+    // Timers of different scopes are never combined into one matrix.
     fs::write(folder.join("plan.mdle"), PLAN.replace("(wait 1)", "(atIsection 1000)")).unwrap();
     assert_eq!(message(&["matrices", "--combine", "-o", "written/here"]).0, Some(0));
     assert_eq!(
@@ -268,7 +270,7 @@ fn failures_to_print_or_write_have_a_help() {
     let (status, report) = message("{ P (Atom (wait 1) stop)^9999 }", &["matrices=large"]);
     assert!(status == Some(1) && report.contains("error[E0502]") && report.contains("99990000 ones"), "{report}");
     assert!(!folder.join("large").exists());
-    // Counted once, there is one.
+    // Combined, the interrupts have a single matrix.
     let (status, report) = message("{ P (Atom (bumper) stop)^9999 }", &["matrices=large", "--combine"]);
     assert!(status == Some(0) && report.contains("1 matrix of 10000 states"), "{report}");
     let (status, report) = message(PLAN, &["matrices=plan.mdle"]);

@@ -43,7 +43,7 @@ fn a_sent_plan_takes_no_request_of_the_operator_back() {
     bob.turn();
     begins.recv().unwrap();
     let own = bob.run.plans().swap(text(IDLE), When::Now);
-    // Both wait for the compiler.
+    // The operator's plan and the sent plan both wait for the compiler.
     bob.gets(DRIFT, When::PlanEnds);
     bob.turn();
     assert_eq!(bob.answers(), []);
@@ -65,7 +65,7 @@ fn requests_of_the_operator_are_compiled_first() {
     bob.gets(DRIFT, When::Now);
     bob.turn();
     begins.recv().unwrap();
-    // It waits, and of two that wait the newer counts.
+    // The second plan waits for the compiler, and the newer third plan replaces it.
     bob.gets(DRIFT, When::Now);
     bob.turn();
     bob.gets(IDLE, When::Now);
@@ -77,11 +77,11 @@ fn requests_of_the_operator_are_compiled_first() {
     assert_eq!(bob.answers(), [accepted(1, "Main takes over")]);
     compile.send(()).unwrap();
     assert_eq!(bob.answered(), accepted(3, "Main takes over"));
-    // The operator's plan takes the place of one that waits for the compiler.
+    // The operator's plan replaces a plan that waits for the compiler.
     bob.run.turns(30);
     bob.gets(DRIFT, When::PlanEnds);
     bob.turn();
-    // Begun are the operator's text, the third plan and the fourth one.
+    // The compiler has begun with the operator's text, the third plan and the fourth plan.
     (0..3).for_each(|_| begins.recv().unwrap());
     bob.gets(IDLE, When::PlanEnds);
     bob.turn();
@@ -100,7 +100,7 @@ fn a_sent_plan_takes_no_place_of_a_plan_of_the_operator() {
         assert_eq!(bob.answers(), [refused(number, WAITS)], "{when:?}");
         assert_eq!(bob.run.plans().armed(), Some(("Main", When::PlanEnds)));
     }
-    // It waits no longer.
+    // The operator's plan begins and no longer waits.
     bob.run.turn("b");
     assert_eq!(bob.turn(), "idle");
     bob.run.turns(10);

@@ -1,5 +1,5 @@
-//! Tests pictures of random plans: they are complete, nothing leaves their edges, they contain every condition, and
-//! they show the transitions of the plan. Also tests plans that are too large for a picture.
+//! Tests pictures of random plans: they are complete, nothing leaves their edges, and they show every condition and the
+//! transitions of the plan. Also tests plans that are too large for a picture.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "who reads a failure wants the seed and the plan")]
 
@@ -81,7 +81,7 @@ fn assert_well_drawn(machine: &Machine, picture: &Element) {
         }
         for text in group.children.iter().filter(|child| child.name == "text" && child.attribute("class") != "count") {
             let x: i64 = text.attribute("x").parse().unwrap();
-            // Letters are 12 pixels high and not wider than 7.3.
+            // Letters are 12 pixels high and at most 7.3 pixels wide.
             let right = x + text.text.chars().count() as i64 * 73 / 10;
             assert!(right <= here[2], "{:?} is too long for its box", text.text);
         }
@@ -140,7 +140,7 @@ fn a_long_condition_is_whole_in_its_tooltip() {
     let (group, _) = boxes(&picture)[0];
     assert_eq!(group.children[0].text, format!("P\nuntil {condition}"));
     assert!(group.children.iter().any(|child| child.text.ends_with('…')), "{text}");
-    // What is longer than anybody reads is not told either.
+    // Very long conditions are shortened in tooltips, too.
     let long: Vec<_> = (1..=2000).map(|seconds| format!("wait {seconds}")).collect();
     let text = svg(&compiled(&format!("{{ P (Atom ({}) stop) }}", long.join(" OR "))).machine).unwrap();
     assert!(text.len() < 20_000 && text.contains("more characters"), "{} bytes", text.len());
@@ -199,7 +199,7 @@ fn graphviz_takes_the_graphs_where_it_is_installed() {
     };
     for (seed, compiled, _) in plans().filter(|(seed, ..)| seed % 30 == 29) {
         let text = dot(&compiled.machine).unwrap();
-        // Whether it is there or not, the graph has Graphviz's grammar.
+        // Without Graphviz, only the grammar of the graph is checked.
         assert!(!read_dot(&text).nodes.is_empty());
         let Some(output) = with(&text) else { continue };
         let message = String::from_utf8_lossy(&output.stderr);
@@ -214,7 +214,7 @@ fn diagrams_have_every_atom_and_lead_nowhere_outside() {
         let diagram = read_mermaid(&mermaid(machine).unwrap());
         let states: BTreeSet<_> = diagram.states.values().flatten().collect();
         assert_eq!(states.len(), machine.elements().len());
-        // Each composite state has a begin.
+        // Each composite state has an initial transition.
         let begins = diagram.transitions.values().flatten().filter(|(from, ..)| from == "[*]");
         assert_eq!(begins.count(), diagram.transitions.len());
     }

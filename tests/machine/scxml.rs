@@ -49,7 +49,7 @@ fn data(line: &str) -> Value {
     value(&serde_json::from_str(line).unwrap())
 }
 
-/// Compares a plan as an SCXML machine with the machine `table` on a script.
+/// Compares the SCXML machine of a plan with the machine `table` on a script.
 fn compare(plan: &Nondegenerate, script: &str, seen: &mut Seen) {
     let document = read(&scxml(plan).expect("a small plan"));
     let mut machine = Machine::new(&document);
@@ -115,7 +115,7 @@ fn the_outer_interrupt_wins_and_a_behavior_can_be_left_from_each_of_its_atoms() 
 
 #[test]
 fn a_machine_is_no_larger_than_anybody_reads() {
-    // Each of 5,000 states would have the long condition of the plan.
+    // Each of the 5,000 states would contain the long condition of the plan.
     let long: Vec<_> = (1..1000).map(|seconds| format!("atIsection 1000 AND wait {seconds}")).collect();
     let text = format!("{{ P ({}) (Atom (wait 1) stop)^5000 }}", long.join(" OR "));
     let plan = TextFile { path: "plan.mdle".into(), text };

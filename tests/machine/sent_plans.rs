@@ -1,4 +1,4 @@
-//! Tests plans that other robots send while the robot runs: the plans that they replace, and the answers.
+//! Tests plans that other robots send while the robot runs: which plans they replace, and the answers to the senders.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -110,22 +110,22 @@ impl Bob {
         sent.into_iter().map(answer).collect()
     }
 
-    /// Runs a turn; returns its law.
+    /// Runs a turn, and returns its law.
     pub(crate) fn turn(&mut self) -> String {
         let turn = self.run.turn("");
         turn.split(' ').nth(1).unwrap_or(&turn).to_owned()
     }
 
-    /// Runs turns until an answer has been sent; returns the answer.
+    /// Runs turns until an answer has been sent, and returns the answer.
     pub(crate) fn answered(&mut self) -> (u64, bool, String) {
         self.until(|bob| bob.answers().pop())
     }
 
-    /// Runs turns until `find`, which is called after each turn, returns a value; returns this value.
+    /// Runs turns until `find`, which is called after each turn, returns a value, and returns this value.
     pub(crate) fn until<T>(&mut self, find: impl Fn(&mut Self) -> Option<T>) -> T {
         let turns = (0..10_000).find_map(|_| {
             self.turn();
-            // The compiler has a thread of its own.
+            // The compiler runs in a separate thread and needs time.
             std::thread::sleep(std::time::Duration::from_millis(1));
             find(self)
         });
@@ -145,7 +145,7 @@ impl Bob {
     }
 }
 
-/// Returns the answer that refuses the plan with number `of`.
+/// Returns the answer that refuses the plan with the number `of`.
 pub(crate) fn refused(of: u64, reason: &str) -> (u64, bool, String) {
     (of, false, reason.to_owned())
 }
@@ -166,7 +166,7 @@ fn no_sent_plan_replaces_that_of_a_safety_rule() {
         assert_eq!([bob.turn(), bob.turn()], ["idle", "idle"], "{when:?}");
         assert_eq!(bob.answers(), [refused(number, REPLACED)]);
     }
-    // The operator takes over again.
+    // The operator replaces the plan again.
     bob.run.plans().replace(loaded(FIRST).unwrap().plan(), When::Now);
     assert_eq!(bob.turn(), "seek");
     bob.gets(DRIFT, When::Now);
@@ -198,7 +198,7 @@ fn a_safety_rule_overrules_plans_being_compiled() {
     compile.send(()).unwrap();
     assert_eq!(bob.answered(), refused(1, REPLACED));
     assert_eq!([bob.turn(), bob.turn()], ["idle", "idle"]);
-    // A text of the operator neither, and nothing is left that could take over later.
+    // The same holds for a text of the operator. No plan is left that could take over later.
     let mut bob = Bob::compiling_for(channel().0, channel().1);
     bob.run.plans().swap(PlanSource::Text(DRIFT.to_owned()), When::Now);
     bob.retreats();
@@ -235,7 +235,7 @@ fn sent_plans_are_not_stored() {
         bob.run.turns(11);
         assert!(bob.answers().iter().all(|(_, is_accepted, _)| *is_accepted));
     }
-    // That of the operator is as it was.
+    // The operator's plan is still stored, and no other.
     assert_eq!(bob.run.plans().stored().map(|plan| &*plan.name).collect::<Vec<_>>(), ["Main"]);
     bob.run.plans().run("Main", When::Now).unwrap();
     assert_eq!([bob.turn(), bob.turn()].last().unwrap(), "idle");
@@ -249,7 +249,7 @@ fn a_robot_takes_one_plan_a_second_of_another() {
         for _ in 0..turns {
             bob.gets(DRIFT, When::PlanEnds);
             bob.turn();
-            // Each plan that waits is replaced by the next one.
+            // Each waiting plan is replaced by the next one.
             let answers = bob.answers().into_iter().filter(|(_, _, sentence)| sentence != TAKEN);
             accepted.extend(answers.map(|(_, is_accepted, sentence)| {
                 let is_pace = sentence == "it sends more than one plan a second: send it again later";
@@ -264,7 +264,7 @@ fn a_robot_takes_one_plan_a_second_of_another() {
     assert_eq!(accepted(100).iter().filter(|is_accepted| **is_accepted).count(), 10);
 }
 
-/// Returns the answer that accepts the plan with number `of`.
+/// Returns the answer that accepts the plan with the number `of`.
 pub(crate) fn accepted(of: u64, sentence: &str) -> (u64, bool, String) {
     (of, true, sentence.to_owned())
 }
@@ -307,7 +307,7 @@ fn an_operator_takes_no_answers_away() {
     begins.recv().unwrap();
     bob.gets(DRIFT, When::Now);
     bob.turn();
-    // It takes the place of the second plan, which waits for the compiler, and the events are read as in a session.
+    // The operator's plan replaces the second plan, which waits for the compiler. The events are read as in a session.
     bob.run.plans().swap(PlanSource::Text(IDLE.to_owned()), When::PlanEnds);
     bob.run.journal.extend(bob.run.engine.plans_mut().take_events());
     assert_eq!(bob.answered(), refused(2, "a later request replaces this one"));

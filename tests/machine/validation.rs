@@ -1,4 +1,4 @@
-//! Tests that validation distinguishes machines that do not match their plan from machines that do, on mutations of
+//! Tests that validation accepts machines that match their plan and rejects machines that do not, with mutations of
 //! random machines.
 
 use std::collections::BTreeMap;
@@ -93,7 +93,7 @@ fn pick<'a, T>(all: &'a mut [T], chance: &mut Chance) -> &'a mut T {
     &mut all[place]
 }
 
-/// Returns another number, which in most cases is a neighbour of `number`.
+/// Returns another number, in most cases a neighbor of `number`.
 fn other(number: u32, chance: &mut Chance) -> u32 {
     match chance.below(3) {
         0 => number.wrapping_sub(1),
@@ -132,6 +132,6 @@ fn every_mutated_machine_is_rejected() {
         );
     }
     println!("{tried:#?}");
-    // Nothing is left untried.
+    // Every mutation was tried.
     assert_eq!(tried.len(), WRONG.len(), "{tried:?}");
 }

@@ -1,4 +1,4 @@
-//! An alphabet is read or has errors, and is bound as Rust.
+//! Fuzzes the reader of alphabets: an alphabet has errors, or bindings in Rust can be generated for it.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

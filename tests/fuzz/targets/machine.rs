@@ -1,4 +1,4 @@
-//! Fuzzes Theorem 1: the theorem has an answer for every machine.
+//! Fuzzes Theorem 1: every machine has an answer.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Fuzzes the reader of records: a record is read or has an error, and has the same turns when it is written again.
+//! Fuzzes the reader of records: a record is read or has an error, and keeps its turns when it is written again.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Fuzzes both ends of the line of a Scout: after any bytes, the driver and the emulator still read messages.
+//! Fuzzes the serial protocol of a Scout: after any bytes, the driver and the emulator still read messages.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

@@ -1,4 +1,4 @@
-//! Tests the conversion of any machine to a plan with `after`: the plan and the machine are compared in each turn.
+//! Tests the conversion of any machine to a plan with `after`: the plan and the machine are compared turn by turn.
 
 use mdle_compiler::alphabet;
 use mdle_compiler::diagnostic::{SourceId, Sources};
@@ -38,7 +38,7 @@ fn states(atoms: usize, rows: &[Row], fired: &[Vec<bool>]) -> Vec<usize> {
     trace
 }
 
-/// Returns the alphabet of a robot with the laws and interrupts of the machine, and with `stop` and `wait`.
+/// Returns the alphabet of a robot with the laws and interrupts of the machine, with `stop` and with `wait`.
 fn alphabet(machine: &Machine) -> alphabet::Alphabet {
     let mut text = "target machine : crate none, period 100ms;\ncontrol stop;\n".to_owned();
     text += "interrupt wait(duration: time s in 0..1e10);\n";

@@ -1,4 +1,4 @@
-//! Compares the theorem with its statement, on all small machines and on random larger ones.
+//! Compares the implementation of Theorem 1 with its statement, on all small machines and on random larger ones.
 
 use std::sync::LazyLock;
 use std::time::Instant;
@@ -23,7 +23,7 @@ struct Count {
     with_loops: usize,
 }
 
-/// Compares the theorem with its statement on one machine.
+/// Compares the implementation of the theorem with its statement on one machine.
 fn compare(atoms: usize, rows: &[Row], start: Option<usize>, count: &mut Count) {
     let machine = machine(atoms, rows);
     let machine = match start {
@@ -80,7 +80,7 @@ fn exhaust(atoms: usize, interrupts: usize, start: Option<usize>) -> Count {
             loop {
                 let machine: Vec<_> = chosen.iter().map(|row| rows[*row].clone()).collect();
                 compare(atoms, &machine, start, &mut count);
-                // The next combination that begins with this row.
+                // Continues with the next combination that begins with the same row.
                 let Some(place) = (1..interrupts).rev().find(|place| chosen[*place] + 1 < rows.len()) else { break };
                 let next = chosen[place] + 1;
                 chosen[place..].fill(next);
@@ -130,7 +130,7 @@ fn samples_of_larger_machines_are_judged_as_the_statement_does() {
     for (atoms, interrupts) in [(3, 4), (4, 3)] {
         let count = sample(atoms, interrupts);
         println!("{} states, {interrupts} interrupts: {count:?} {:?}", atoms + 1, begin.elapsed());
-        // Chance tries what it is meant to try.
+        // The random machines cover what they are meant to test.
         assert!(count.strings > count.machines / 10 && count.strings < count.machines * 9 / 10, "{count:?}");
         assert!(count.with_loops > count.machines / 20, "{count:?}");
     }

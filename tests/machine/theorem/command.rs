@@ -1,4 +1,4 @@
-//! Tests of `mdlec decompile` through the real binary: the paper's machines, and files that are not machines.
+//! Tests `mdlec decompile` through the real binary: the paper's machines, and files that are not machines.
 
 use std::fmt::Write;
 use std::fs;
@@ -30,7 +30,7 @@ fn with_file(test: &str, text: &str) -> PathBuf {
     folder
 }
 
-/// Returns the output and the messages of `mdlec decompile` about a file, and the exit status.
+/// Runs `mdlec decompile` on a file, and returns its output and messages, and the exit status.
 fn message(test: &str, text: &str, options: &[&str]) -> (String, Option<i32>) {
     let output = run_mdlec(&with_file(test, text), &[&["decompile", "fsm.json"], options].concat());
     let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
@@ -92,7 +92,7 @@ fn every_plan_to_learn_from_comes_back_and_is_accepted() {
             let output = run_mdlec(&folder, options);
             let text = String::from_utf8(output.stdout).unwrap();
             assert_eq!(output.status.code(), Some(0), "{plan:?}: {}", String::from_utf8_lossy(&output.stderr));
-            // What asks labels is called by its interrupt's name.
+            // Conditions with `after` are represented by the name of their interrupt, which is not a quark.
             if !fs::read_to_string(&plan).unwrap().contains("after ") {
                 let checked = run_mdlec_reading(&folder, &["check", "-", "--target", "sim"], &text);
                 let message = String::from_utf8_lossy(&checked.stderr).into_owned();
@@ -163,7 +163,7 @@ fn a_file_that_cannot_be_read_is_wrong_usage() {
 }
 
 /// Returns a machine that is a chain of `states` states. Each of the first `depth` states begins a nested scope, and
-/// all of these scopes end with the last state.
+/// all these scopes end with the last state.
 fn chain(states: usize, depth: usize) -> String {
     let names: Vec<_> = (1..=states).map(|number| format!("\"s{number}\"")).collect();
     let mut interrupts: Vec<_> = (1..states)

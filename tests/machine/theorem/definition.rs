@@ -1,7 +1,7 @@
 //! Implements Theorem 1 directly from its statement (docs/src/reference/semantics.md, 8.5), by trying every numbering,
 //! every cut into runs, and every family of loops.
 //!
-//! It shares no code with the compiler. Everything that depends only on the number of atoms is computed once.
+//! It shares no code with the compiler. Everything that depends on the number of atoms only is computed once.
 
 use mdle_theory::theorem::{Found, Machine};
 
@@ -10,10 +10,10 @@ use super::machines::Table;
 /// First and last position of a run or a loop.
 type Interval = (usize, usize);
 
-/// A set of intervals: bit `i` stands for the interval with index `i` in the list of all intervals.
+/// A set of intervals: bit `i` represents the interval with index `i` in the list of all intervals.
 type Set = u32;
 
-/// All consequences of the statement for machines with a certain number of atoms.
+/// Precomputed consequences of the statement for machines with a certain number of atoms.
 pub(crate) struct Definition {
     atoms: usize,
     intervals: Vec<Interval>,
@@ -32,9 +32,9 @@ fn nest_or_are_disjoint(one: Interval, other: Interval) -> bool {
     holds(one, other) || holds(other, one) || one.1 < other.0 || other.1 < one.0
 }
 
-/// Returns the destinations that the interrupt of a run may have: the start of the innermost loop that encloses the run
-/// and ends with it or, if there is none, the position after the run. A loop that is equal to the run may be the inner
-/// or the outer one, so both destinations are returned.
+/// Returns the possible destinations of a run's interrupt: the start of the innermost loop that encloses the run and
+/// ends with it or, without such a loop, the position after the run. If a loop is equal to the run, either of them may
+/// be the inner one, so both destinations are returned.
 fn destinations(run: Interval, loops: &[Interval]) -> Vec<usize> {
     let ends_with = |inner: bool| {
         let around = loops.iter().filter(|around| around.1 == run.1 && around.0 <= run.0);
@@ -60,7 +60,7 @@ impl Definition {
         });
         let cuts: Vec<Vec<_>> = loops
             .map(|(family, loops)| {
-                // Where a run may lead if it may be a run at all.
+                // Possible destinations of each interval as a run; none if it crosses a loop.
                 let leads: Vec<_> = intervals
                     .iter()
                     .zip(&crossing)

@@ -1,4 +1,4 @@
-//! Generates random plans of nested endless loops, in which all interrupts differ.
+//! Generates random plans with nested endless loops and without repeated interrupts.
 
 use mdle_tests::chance::Chance;
 

@@ -1,13 +1,13 @@
-//! Small machines as numbers. For each interrupt, a machine has a row with the destination of each atom, if there is
-//! one.
+//! Small machines, identified by numbers. For each interrupt, a machine has a row with the destination of each atom, if
+//! any.
 
 use mdle_tests::chance::Chance;
 use mdle_theory::theorem::{Machine, Named, State};
 
-/// A row: the destination to which an interrupt leads from each atom; `None` if it leads nowhere.
+/// A row: the destination to which an interrupt leads from each atom; `None` if it does not affect the atom.
 pub(crate) type Row = Vec<Option<usize>>;
 
-/// All rows of machines with a given number of atoms, which are numbered from 0.
+/// The table of all rows for a given number of atoms. Rows are numbered from 0.
 pub(crate) struct Table;
 
 impl Table {
@@ -48,8 +48,8 @@ pub(crate) fn machine(atoms: usize, rows: &[Row]) -> Machine {
     Machine::new(states, interrupts.collect())
 }
 
-/// Returns the rows of a random machine with nested scopes and loops and with its atoms in random order. The machine
-/// often has a string; otherwise it is similar to a machine with a string.
+/// Returns the rows of a random machine with nested scopes and loops and with its atoms in random order. Most of these
+/// machines have a string; the others differ little from a machine with a string.
 pub(crate) fn likely(chance: &mut Chance, atoms: usize, interrupts: usize) -> Vec<Row> {
     let (mut loops, mut runs) = (Vec::new(), Vec::new());
     enclose(chance, 0, atoms, &mut loops, &mut runs);
@@ -57,7 +57,7 @@ pub(crate) fn likely(chance: &mut Chance, atoms: usize, interrupts: usize) -> Ve
     for (first, last) in runs {
         let around: Vec<_> = loops.iter().filter(|(begin, end)| *end == last && *begin <= first).collect();
         let to = around.iter().map(|(begin, _)| *begin).max().unwrap_or(last + 1);
-        // Where nothing is listed yet: one interrupt may stand in several places.
+        // Rows in which these atoms have no destination yet; one interrupt may occur in several places.
         let free: Vec<_> = (0..interrupts).filter(|row| rows[*row][first..=last].iter().all(Option::is_none)).collect();
         if !free.is_empty() {
             let row = free[chance.below(free.len())];
@@ -82,7 +82,7 @@ pub(crate) fn likely(chance: &mut Chance, atoms: usize, interrupts: usize) -> Ve
     disordered
 }
 
-/// Encloses atoms in random scopes and loops; each atom has at least a scope of its own.
+/// Encloses atoms in random scopes and loops; each atom has at least its own scope.
 fn enclose(
     chance: &mut Chance,
     first: usize,

@@ -1,5 +1,5 @@
-//! Compares the check of the printed conditions with their wording, on whole matrices and with every numbering. Also
-//! tests where they differ from the exact conditions.
+//! Compares the check of the paper's printed conditions with their wording, on whole matrices and with every numbering
+//! of the states. Also tests where the printed conditions differ from the exact ones.
 
 use mdle_tests::chance::{Chance, repeated};
 use mdle_theory::theorem::{Answer, Machine, Named, STEPS, State, as_printed, decompile};
@@ -13,7 +13,7 @@ const MACHINES: u64 = 7_000;
 type Matrix = Vec<usize>;
 
 /// Returns `true` if R1 and R2 hold as printed, and R3 holds where two runs overlap (`k1 < p2`). R4 is not checked,
-/// because R2 forbids the moves that it is about.
+/// because R2 forbids the transitions to which it refers.
 fn hold(matrices: &[Matrix]) -> bool {
     let states = matrices[0].len();
     let moves = |matrix: &Matrix| -> Vec<_> { (0..states).filter(|column| matrix[*column] != *column).collect() };
@@ -77,33 +77,33 @@ fn they_are_judged_in_the_one_numbering_in_which_they_can_hold() {
                 let rules = as_printed(&machine, &exactly);
                 let meant = rules.iter().all(|rule| rule.meant.is_none());
                 assert_eq!(meant, hold_somewhere(atoms, &rows), "{rows:?}: {rules:?}");
-                // To the letter, R4 forbids whatever leads forwards.
+                // In its literal wording, R4 forbids every forward transition.
                 assert!(rules.iter().any(|rule| rule.letter.is_some()), "{rows:?}: {rules:?}");
                 match exactly {
                     Answer::String(found) if !meant => differ.push((atoms, rows, !found.loops.is_empty())),
-                    // As they are meant they never accept what has no string.
+                    // In their intended meaning, the conditions never accept a machine without a string.
                     Answer::None(_) => assert!(!meant, "{rows:?}: {rules:?}"),
                     Answer::String(_) | Answer::Stopped(_) => {}
                 }
             }
         }
     }
-    // The smallest machines that have a string though the printed conditions say that they have none: with a loop,
+    // The smallest machines that have a string although they violate the printed conditions: a machine with a loop,
     let with_loop = differ.iter().find(|(.., has_loop)| *has_loop).expect("one with a loop");
     assert_eq!(with_loop, &(1, vec![vec![Some(0)]], true));
-    // without one, which has two interrupts for one atom,
+    // a machine without a loop, which has two interrupts for one atom,
     let without = differ.iter().find(|(.., has_loop)| !has_loop).expect("one without");
     assert_eq!(without, &(1, vec![vec![Some(1)], vec![Some(1)]], false));
-    // and with one interrupt in two places.
+    // and a machine with one interrupt in two places.
     let places = differ.iter().find(|(_, rows, has_loop)| rows.len() == 1 && !has_loop).expect("one in two places");
     assert_eq!(places, &(2, vec![vec![Some(2), Some(0)]], false));
 }
 
-/// A move: its interrupt, the state that it leaves, and the state that it enters.
+/// A transition: its interrupt, the state that it leaves, and the state that it enters.
 type Move = (usize, usize, usize);
 
-/// Checks conditions R2 and R3 by their printed wording, exhaustively, for states in the order of the file. Returns for
-/// each condition the violation that was found first, or `None` if the condition holds.
+/// Checks conditions R2 and R3 in their printed wording, exhaustively, for states in the order of the file. For each
+/// condition, returns the first violation found, or `None` if the condition holds.
 fn sentences(atoms: usize, rows: &[Row]) -> [Option<String>; 2] {
     let row = |interrupt: usize, column: usize| rows[interrupt].get(column).copied().flatten().unwrap_or(column);
     let all = (0..atoms).flat_map(|from| (0..rows.len()).map(move |interrupt| (interrupt, from)));
@@ -139,7 +139,8 @@ fn the_letter_is_judged_as_if_everything_were_looked_at() {
     for seed in 0..repeated(MACHINES) {
         let mut chance = Chance::new(seed);
         let (atoms, interrupts) = (1 + chance.below(6), 1 + chance.below(5));
-        // All leads forwards, and from each state to the next: the order of the file is the only one.
+        // All transitions lead forward, and one leads from each state to the next, so the file's order is the only
+        // possible one.
         let row = |chance: &mut Chance| -> Row {
             let (first, length) = (chance.below(atoms), chance.below(atoms) + 1);
             let to = (first + length).min(atoms);
@@ -164,7 +165,7 @@ fn the_letter_is_judged_as_if_everything_were_looked_at() {
     assert!(broken.iter().chain(&held).all(|count| *count > repeated(MACHINES) / 20), "{broken:?} {held:?}");
 }
 
-/// Returns `true` if some transition leads back in every order of the states.
+/// Returns `true` if every order of the states has a transition that leads back.
 fn leads_back(rows: &[Row]) -> bool {
     let mut left: Vec<usize> = (0..rows[0].len()).collect();
     let leads_inside = |from: usize, left: &[usize]| {
@@ -185,7 +186,7 @@ fn what_leads_back_is_judged_as_if_everything_were_looked_at() {
         let rows = likely(&mut chance, atoms, interrupts);
         let machine = machine(atoms, &rows);
         let Answer::String(found) = decompile(&machine, STEPS) else { continue };
-        // Only there the order is that of the string, and the places those of the file.
+        // Only in these machines is the file's order that of the string, so that positions can be compared.
         if !leads_back(&rows) || !found.order.iter().map(|state| state.0).is_sorted() {
             continue;
         }
@@ -202,8 +203,8 @@ fn large_machines_are_judged_in_time_with_their_moves() {
     const ATOMS: u32 = 30_000;
     let named = |name: String| Named { name, text: None };
     let moves = |first: u32, last: u32| (first..last).map(|from| (State(from), State(last))).collect();
-    // Everything is enclosed, and each hundred of atoms, and each atom: to look at every pair of moves would take
-    // hours.
+    // A scope encloses everything, others enclose a hundred atoms each, and others one atom each: a check of every pair
+    // of transitions would take hours.
     let mut interrupts = vec![(named("all".into()), moves(0, ATOMS))];
     interrupts.extend((0..ATOMS / 100).map(|part| (named(format!("w{part}")), moves(100 * part, 100 * part + 100))));
     interrupts.extend((0..ATOMS).map(|atom| (named(format!("x{atom}")), moves(atom, atom + 1))));

@@ -1,5 +1,5 @@
-//! Tests the theorem as the inverse of Algorithm 1: a plan's machine, whose states were shuffled, has a string, and the
-//! string has the same machine.
+//! Tests the theorem as the inverse of Algorithm 1: the machine of a plan, with its states shuffled, has a string, and
+//! this string has the same machine.
 
 use std::collections::BTreeMap;
 
@@ -32,7 +32,7 @@ struct Seen {
     plans: usize,
     states: usize,
     with_loops: usize,
-    /// Plans that use `after`. An FSM file does not contain enough information to compile them again.
+    /// Plans that use `after`. An FSM file lacks the information to compile them again.
     asking: usize,
     /// Plans for which the search takes too long.
     stopped: usize,
@@ -49,7 +49,7 @@ fn disordered(file: &FsmFile, chance: &mut Chance) -> FsmFile {
     file
 }
 
-/// Returns the meaning of a machine, with positions instead of the names of its states: the laws, and the moves of each
+/// Returns the meaning of a machine, with positions in place of state names: the laws, and the transitions of each
 /// condition.
 fn meaning(file: &FsmFile, place: &BTreeMap<String, usize>) -> (Vec<String>, Vec<(String, usize, usize)>) {
     let mut laws = vec![String::new(); file.laws.len()];
@@ -65,8 +65,8 @@ fn meaning(file: &FsmFile, place: &BTreeMap<String, usize>) -> (Vec<String>, Vec
     (laws, moves)
 }
 
-/// Decompiles a machine whose states were shuffled, compiles the resulting plan, and asserts that its machine has the
-/// same meaning.
+/// Decompiles a machine with shuffled states, compiles the resulting plan, and asserts that its machine has the same
+/// meaning.
 fn go_round(file: &FsmFile, chance: &mut Chance, what: &str, seen: &mut Seen) {
     let disordered = disordered(file, chance);
     let machine = read(&disordered.to_json()).unwrap_or_else(|error| panic!("{what}: {error:?}"));
@@ -92,7 +92,7 @@ fn go_round(file: &FsmFile, chance: &mut Chance, what: &str, seen: &mut Seen) {
     let again = fsm_file(&again.nondegenerate).expect("a small machine");
     let numbers = found.order.iter().map(|state| machine.states()[state.0 as usize].clone()).zip(0..).collect();
     let own = again.states.iter().cloned().zip(0..).collect();
-    // A plan's braces are a scope, whose interrupt is null where no other encloses everything.
+    // The braces of a plan are a scope, whose interrupt is null if no interrupt of the machine encloses everything.
     let (laws, mut moves) = meaning(&again, &own);
     let (expected_laws, expected) = meaning(file, &numbers);
     if moves.len() != expected.len() {
@@ -135,7 +135,8 @@ fn plans_of_loops_without_end_go_round() {
     assert!(seen.with_loops > plans / 2, "{seen:?}");
 }
 
-/// Parts of laws and conditions: valid parts, and parts that could change the text around them.
+/// Fragments of laws and conditions: valid fragments, and fragments that could change how the surrounding text is
+/// parsed, such as parentheses and comments.
 const PIECES: [&str; 20] = [
     "idle",
     "drift",
@@ -162,7 +163,7 @@ const PIECES: [&str; 20] = [
 /// Returns the transitions by interrupts, as pairs of states in ascending order.
 fn moves(file: &FsmFile) -> Vec<(usize, usize)> {
     let place: BTreeMap<_, _> = file.states.iter().zip(0..).collect();
-    // Whether a law completes is its own matter.
+    // Completion is left out, because it depends on the law.
     let interrupts = file.interrupts.iter().filter(|interrupt| interrupt.name != "completed");
     let all = interrupts.flat_map(|interrupt| &interrupt.moves.0);
     let mut moves: Vec<_> = all.map(|(from, to)| (place[from], place[to])).collect();
@@ -196,7 +197,7 @@ fn texts_that_reach_further_are_refused_or_change_nothing() {
             let (_, wrong) = parse(id, &plan, &arena);
             assert_eq!(wrong, [], "{text:?}\n{plan}");
         }
-        // What names a quark of the robot's is a plan whose machine is the same.
+        // If the text names a quark of the robot, the plan must have the same machine.
         let Ok(again) = compile_plan(&printed, "Decompiled") else { continue };
         taken += 1;
         let again = fsm_file(&again.nondegenerate).unwrap();

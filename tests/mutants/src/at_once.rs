@@ -12,10 +12,10 @@ use crate::refusals::{Executable, Refusal, executables, refusals};
 use crate::schemata::{Body, Schema, VARIABLE};
 use crate::trial::{FAST, Outcome, RUNTIME, TESTS, cargo, environment};
 
-/// Processor time that a test may take in addition to three times its duration without a fault; a test that takes
-/// longer hangs. Processor time is limited so that other programs may run at the same time.
+/// Processor time that a test may take beyond three times its duration without a fault; a test that takes longer counts
+/// as hanging. Processor time is limited, and not wall-clock time, because other programs may run at the same time.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// Wall-clock time after which a test hangs.
+/// Wall-clock time after which a test counts as hanging.
 const ENDLESS: Duration = Duration::from_secs(1800);
 /// Maximum memory of a process, in KiB.
 const MEMORY: &str = "6291456";
@@ -39,12 +39,12 @@ pub(crate) enum BuildState {
     Apart,
 }
 
-/// A test executable, with its index in the list of tests and its maximum processor time.
+/// A test executable, with the index of its test in the list of tests and its maximum processor time.
 #[derive(Debug)]
 struct Test {
     number: usize,
     executable: Executable,
-    /// Names, or parts of names, of the tests that are run; empty to run all tests.
+    /// Names, or parts of names, of the tests to run; empty to run all tests.
     filters: &'static [&'static str],
     limit: Duration,
 }
@@ -87,7 +87,8 @@ impl<'m> AtOnce<'m> {
             let status = self.executed(test, number(place));
             match (status.code(), status.signal()) {
                 (Some(0), _) => {}
-                // `timeout` tells by its code, or by dying of the same signal, that it was this.
+                // A limit ended the test: `timeout` exits with 137 or dies of the SIGKILL that it sends; the limit on
+                // processor time sends SIGXCPU.
                 (Some(137), _) | (_, Some(KILLED | OUT_OF_TIME)) => return Outcome::Hangs(test.number),
                 _ => return Outcome::Caught(test.number),
             }
@@ -101,7 +102,7 @@ impl<'m> AtOnce<'m> {
         self.checkout
     }
 
-    /// Marks the mutants that are not valid syntax, each of which would make the whole file invalid.
+    /// Marks the mutants with invalid syntax, because each of them would make the whole file invalid.
     fn refuse_what_is_no_syntax(&mut self, source: &Source) {
         for (standing, mutant) in self.mutants.iter_mut().filter(|(_, mutant)| mutant.file == source.file) {
             if syn::parse_file(&mutant.apply(&source.text)).is_err() {
@@ -110,7 +111,7 @@ impl<'m> AtOnce<'m> {
         }
     }
 
-    /// Returns `true` if rustc accepts the files with all remaining mutants. Otherwise removes the mutants that rustc
+    /// Returns `true` if rustc accepts the files with all remaining mutants. If not, excludes the mutants that rustc
     /// rejects from the next build.
     fn is_built(&mut self, sources: &[Source]) -> bool {
         let schemata: BTreeMap<_, _> =
@@ -177,9 +178,9 @@ impl<'m> AtOnce<'m> {
             .env("CARGO", cargo())
             .env("CARGO_MANIFEST_DIR", &test.executable.folder)
             .env("INSTA_WORKSPACE_ROOT", self.checkout.sources())
-            // What tests build is built as this was.
+            // Tests build their own programs with the same flags as this build.
             .env("RUSTFLAGS", "--cap-lints=allow")
-            // A body with its mutants is long, and so are its frames.
+            // A function with all its mutants is long and has a large stack frame.
             .env("RUST_MIN_STACK", (64 << 20).to_string())
             .env(VARIABLE, number.to_string());
         command.stdout(Stdio::null()).stderr(Stdio::null()).status().expect("a shell")

@@ -1,4 +1,4 @@
-//! A copy of this checkout, in which mutants are built and tested. Its target folder is kept between runs.
+//! A copy of this checkout in which mutants are built and tested. Its target folder is kept between runs.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -33,7 +33,7 @@ impl Checkout {
         for file in &files {
             let inside = file.strip_prefix(checkout.sources()).expect("a file of the copy");
             let wanted = fs::read(root().join(inside)).expect("a file of the checkout");
-            // What is as it should be is not written, or cargo would build it again.
+            // An unchanged file is not written, because cargo would rebuild it.
             if fs::read(file).ok().as_ref() != Some(&wanted) {
                 fs::create_dir_all(file.parent().expect("a file is in a folder")).expect("a folder");
                 fs::copy(root().join(inside), file).expect("a copy");
@@ -61,7 +61,7 @@ impl Checkout {
 /// Returns the output of git in this checkout.
 pub(crate) fn git(arguments: &[&str]) -> String {
     let mut command = Command::new("git");
-    // A checkout that belongs to somebody else, as it may where tests run, is read as well.
+    // The checkout may belong to another user where tests run.
     command.args(["-c", "safe.directory=*"]).args(arguments).current_dir(root());
     let output = command.output().expect("git runs");
     assert!(output.status.success(), "git {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));

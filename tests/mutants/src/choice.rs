@@ -69,7 +69,7 @@ pub(crate) fn all(sources: &[Source]) -> Vec<Mutant> {
     found.flatten().collect()
 }
 
-/// Returns the mutants in a random order that depends on `seed`. The order takes a mutant from each area in turn.
+/// Returns the mutants in a random order that depends on `seed` and takes a mutant from each area in turn.
 pub(crate) fn shuffled(mutants: &[Mutant], seed: u64) -> Vec<&Mutant> {
     let mut chance = ChaCha8Rng::seed_from_u64(seed);
     let mut areas: Vec<Vec<(u64, &Mutant)>> = vec![Vec::new(); AREAS.len()];

@@ -30,10 +30,10 @@ const TEST: &str = "the_driver_conforms";
 /// Number of faults that are tried at the same time.
 const AT_ONCE: usize = 2;
 
-/// Time in seconds after which a test hangs; without a fault it takes two seconds.
+/// Time in seconds after which a test counts as hanging; without a fault it takes two seconds.
 const PATIENCE: &str = "120";
 
-/// Code that is added to each file. It selects the fault.
+/// Code that selects the fault; it is added to each file.
 const CHOICE: &str = r#"
 fn __fault() -> u32 {
     static CHOSEN: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
@@ -125,7 +125,7 @@ fn built(checkout: &Checkout) -> Vec<Executable> {
 
 /// Returns the first check that fails with a fault, and the reason; `None` if no check fails.
 fn tried(tests: &[Executable], number: u32, fault: &Fault) -> Option<String> {
-    // targets/ROBOT/emulator tests the driver in targets/ROBOT.
+    // The tests of the driver in targets/ROBOT are in targets/ROBOT/emulator.
     let robot = Path::new(&fault.file).components().nth(1).expect("a file of a driver");
     let test = tests.iter().find(|test| test.folder.iter().any(|part| part == robot.as_os_str()));
     let output = executed(test.expect("a test of this robot"), number);
@@ -142,7 +142,7 @@ fn tried(tests: &[Executable], number: u32, fault: &Fault) -> Option<String> {
 fn executed(test: &Executable, number: u32) -> Output {
     let mut command = Command::new("timeout");
     command.arg("--signal=KILL").arg(PATIENCE).arg(&test.path).current_dir(&test.folder);
-    // Only a test that captures nothing prints as it goes.
+    // A test prints immediately only if its output is not captured.
     command.env(VARIABLE, number.to_string()).env("RUST_BACKTRACE", "0").args([TEST, "--nocapture"]);
     command.output().expect("`timeout` runs")
 }

@@ -1,4 +1,5 @@
-//! Equivalent mutants, which do not change the behavior of the code, each with the reason: `equivalent.toml`.
+//! The list `equivalent.toml` of equivalent mutants, which do not change the behavior of the code, each with the
+//! reason.
 
 use serde::Deserialize;
 
@@ -31,12 +32,12 @@ impl Equivalents {
         toml::from_str(LIST).expect("tests/mutants/equivalent.toml is as its head says")
     }
 
-    /// Returns the entry of this mutant; `None` if the mutant is not in the list.
+    /// Returns the entry of this mutant, or `None` if the mutant is not in the list.
     pub(crate) fn find(&self, mutant: &Mutant) -> Option<&Equivalent> {
         self.equivalent.iter().find(|entry| entry.is(mutant))
     }
 
-    /// Returns the entries to which no mutant belongs any more, and the entries without a reason.
+    /// Returns the entries that match no mutant any more, and the entries without a reason.
     pub(crate) fn stale<'e>(&'e self, mutants: &'e [Mutant]) -> impl Iterator<Item = &'e Equivalent> {
         let is_stale = |entry: &&Equivalent| entry.reason.is_empty() || !mutants.iter().any(|mutant| entry.is(mutant));
         self.equivalent.iter().filter(is_stale)

@@ -38,7 +38,7 @@ struct Finder<'t> {
 }
 
 impl Finder<'_> {
-    /// Records a change, unless the text remains the same.
+    /// Records a change, unless it leaves the text as it is.
     fn change(&mut self, place: Range<usize>, new: impl Into<String>) {
         let change = Change { place, new: new.into(), function: self.function.clone() };
         if !self.changes.contains(&change) && self.text[change.place.clone()] != change.new {
@@ -73,8 +73,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Records the exchange of the values of two arms of a `match`. A block needs no comma after it, but an expression
-    /// that replaces it does.
+    /// Records the exchange of the values of two arms of a `match`. A comma is added after an expression that replaces
+    /// a block, because a block needs no comma.
     fn exchange_bodies(&mut self, one: &Expr, other: &Expr) {
         let (start, end) = (range(one), range(other));
         let (old, new) = (self.old(one), self.old(other));
@@ -85,8 +85,8 @@ impl Finder<'_> {
         }
     }
 
-    /// Records the negation of a condition, unless it is a comparison or already negated, because the parts of such a
-    /// condition are changed anyway.
+    /// Records the negation of a condition. Comparisons and negations are excluded, because their parts are changed
+    /// anyway.
     fn negate(&mut self, condition: &Expr) {
         if !matches!(condition, Expr::Let(_) | Expr::Binary(_) | Expr::Unary(_) | Expr::Paren(_) | Expr::Lit(_)) {
             self.change(range(condition), format!("(!{})", self.old(condition)));
@@ -150,7 +150,8 @@ impl<'ast> Visit<'ast> for Finder<'_> {
                 self.change(range(literal), if is_zero { "1.0" } else { "0.0" });
             }
             Lit::Bool(value) => self.change(range(literal), (!value.value).to_string()),
-            // Texts are what people read; which of them it is, is seen where they are compared.
+            // Texts are not changed, because they are for people; where code depends on a text, the comparison is
+            // changed.
             _ => {}
         }
     }
@@ -245,7 +246,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
 
     fn visit_block(&mut self, block: &'ast Block) {
         for statement in &block.stmts {
-            // A branch that does nothing but leave is deleted as a whole.
+            // A branch that only leaves the function or loop is deleted together with its `if`.
             if can_be_deleted(statement) && !(block.stmts.len() == 1 && leaves(statement)) {
                 self.change(range(statement), "");
             }

@@ -10,22 +10,22 @@ use crate::mutant::Mutant;
 use crate::report::{self, Report};
 use crate::trial::{Outcome, Trials};
 
-/// Data that are needed to try mutants.
+/// Data for trying mutants.
 pub(crate) struct Judge<'a> {
     pub(crate) sources: &'a [Source],
     pub(crate) equivalents: &'a Equivalents,
 }
 
 impl Judge<'_> {
-    /// Tries mutants one by one until this many have compiled.
+    /// Tries mutants one by one until `count` mutants have compiled.
     pub(crate) fn some(&self, chosen: &[&Mutant], count: usize) -> Report {
         let mut report = Report::default();
         self.apart(&Trials::prepare(Checkout::copy()), chosen, count, &mut report);
         report
     }
 
-    /// Tries all these mutants in a common build. Mutants that cannot be built there, and mutants that survive there,
-    /// are tried one by one.
+    /// Tries all these mutants in a common build. Mutants that cannot be part of it, and mutants that survive in it,
+    /// are then tried one by one.
     pub(crate) fn all(&self, chosen: &[&Mutant]) -> Report {
         let mut report = Report::default();
         let at_once = AtOnce::prepare(Checkout::copy(), self.sources, chosen);

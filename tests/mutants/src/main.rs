@@ -30,28 +30,28 @@ use equivalent::Equivalents;
 use judge::Judge;
 use mutant::Mutant;
 
-/// Puts small faults into the code, one at a time, and says which test catches each of them.
+/// Insert small faults into the code, one at a time, and report which test catches each fault.
 #[derive(Debug, Parser)]
 struct Options {
     /// Try every mutant.
     #[arg(long)]
     all: bool,
-    /// Try those of `equivalent.toml` as well, which no test is known to catch.
+    /// Also try the mutants in `equivalent.toml`, which no test is known to catch.
     #[arg(long)]
     equivalent: bool,
-    /// Try this many, other ones with every seed.
+    /// Number of mutants to try; each seed selects different ones.
     #[arg(long, default_value_t = 5, conflicts_with = "all")]
     count: usize,
     /// Random seed that selects the mutants; the hash of the commit by default.
     #[arg(long)]
     seed: Option<u64>,
-    /// Text that the printed line of a mutant has to contain.
+    /// Try only mutants whose printed line contains this text.
     #[arg(long, default_value = "")]
     only: String,
     /// Try the faults of `drivers.toml` in the robots' drivers; conformance tests must find them.
     #[arg(long, conflicts_with_all = ["all", "equivalent", "count", "seed", "only", "list"])]
     drivers: bool,
-    /// Print the mutants and try none.
+    /// Print the mutants without trying them.
     #[arg(long)]
     list: bool,
 }
@@ -85,7 +85,7 @@ fn main() -> ExitCode {
     if report.is_good() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Prints mutants, until the reader has gone.
+/// Prints mutants until the reader of the output closes it.
 fn list(mutants: &[&Mutant]) -> ExitCode {
     let mut out = BufWriter::new(std::io::stdout().lock());
     let printed = mutants.iter().try_for_each(|mutant| writeln!(out, "{mutant}")).and_then(|()| out.flush());

@@ -13,9 +13,9 @@ pub(crate) struct Mutant {
     pub(crate) area: usize,
     /// Path of the mutated file from the root of the repository.
     pub(crate) file: String,
-    /// Name of the function or constant that changes.
+    /// Name of the function or constant that contains the change.
     pub(crate) function: String,
-    /// Description of the change, which is unique in the function.
+    /// Description of the change, which is unique within the function.
     pub(crate) change: String,
     line: usize,
     /// Range of bytes whose text `new` replaces.
@@ -54,8 +54,8 @@ pub(crate) fn mutants(area: usize, file: &str, text: &str) -> syn::Result<Vec<Mu
     Ok(mutants.collect())
 }
 
-/// Returns a description of the change with the text of its line. The description remains valid if other parts of the
-/// file change.
+/// Returns a description of the change that quotes its line. The description remains valid if other parts of the file
+/// change.
 fn in_words(text: &str, line: usize, found: &finder::Change) -> String {
     let old = short(&text[found.place.clone()]);
     let line = short(text.lines().nth(line - 1).unwrap_or_default());
@@ -64,7 +64,7 @@ fn in_words(text: &str, line: usize, found: &finder::Change) -> String {
     if line == old { format!("`{old}` {becomes}") } else { format!("`{old}` {becomes} in `{line}`") }
 }
 
-/// Returns a text on a single line; if it is long, without its middle part.
+/// Returns a text as a single line, without its middle part if it is long.
 fn short(text: &str) -> String {
     const ENDS: usize = 45;
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -80,7 +80,7 @@ fn short(text: &str) -> String {
 mod tests {
     use super::mutants;
 
-    /// Returns the texts that result from each change, each on a line.
+    /// Returns the texts that result from all changes, one per line.
     fn changed(text: &str) -> String {
         let texts = mutants(0, "file.rs", text).unwrap().into_iter().map(|mutant| mutant.apply(text));
         texts.map(|text| text.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()

@@ -1,5 +1,5 @@
-//! Operators and methods that are exchanged for each other, and methods that can be left out because the type stays the
-//! same.
+//! Operators and methods that are exchanged for each other, and methods whose calls can be left out without a type
+//! error.
 
 use syn::BinOp;
 
@@ -45,7 +45,7 @@ const LEFT_OUT: &[&str] = &[
     "to_ascii_uppercase",
 ];
 
-/// Returns the name for which `name` is easily mistaken.
+/// Returns the name that is easily mistaken for `name`, or `None` if there is none.
 pub(crate) fn mistaken(name: &str) -> Option<&'static str> {
     MISTAKEN.iter().find_map(|&(one, other)| match name {
         _ if name == one => Some(other),
@@ -59,7 +59,7 @@ pub(crate) fn can_be_left_out(method: &str) -> bool {
     LEFT_OUT.contains(&method)
 }
 
-/// Returns the operator for which `operator` is easily mistaken.
+/// Returns the operator that is easily mistaken for `operator`, or `None` if there is none.
 pub(crate) fn other_operator(operator: &BinOp) -> Option<&'static str> {
     Some(match operator {
         BinOp::Add(_) => "-",
@@ -79,12 +79,12 @@ pub(crate) fn other_operator(operator: &BinOp) -> Option<&'static str> {
         BinOp::Gt(_) => ">=",
         BinOp::AddAssign(_) => "-=",
         BinOp::SubAssign(_) | BinOp::MulAssign(_) => "+=",
-        // Of other crates' enums there may be more.
+        // The enum belongs to another crate and may get further variants.
         _ => return None,
     })
 }
 
-/// Returns the numbers before and after a number, with its suffix.
+/// Returns the number minus 1 and the number plus 1, each with the suffix.
 pub(crate) fn neighbours(digits: &str, suffix: &str) -> Vec<String> {
     let Ok(number) = digits.parse::<u64>() else { return Vec::new() };
     let both = [number.checked_sub(1), number.checked_add(1)];

@@ -2,8 +2,8 @@
 
 use syn::{Attribute, Expr, Ident, Lit, Stmt};
 
-/// Returns `true` if two expressions are of the same simple kind, and so may have the same type: names, numbers, or
-/// references to either.
+/// Returns `true` if two expressions are of the same simple kind and may thus have the same type: names, numbers, or
+/// references to these.
 pub(crate) fn is_alike(one: &Expr, other: &Expr) -> bool {
     let is_variable = |expression: &Expr| match expression {
         Expr::Path(path) => path.path.get_ident().is_some_and(|name| !name.to_string().starts_with(char::is_uppercase)),
@@ -17,8 +17,8 @@ pub(crate) fn is_alike(one: &Expr, other: &Expr) -> bool {
     }
 }
 
-/// Returns `true` if a statement has an effect of its own. The only statement with a block that is deleted is an `if`
-/// that leaves the function or loop, because the statements in other blocks are deleted one by one.
+/// Returns `true` if a statement is deleted as a whole. Of the statements with a block, only an `if` that leaves the
+/// function or loop is deleted as a whole; in other blocks, the statements are deleted one by one.
 pub(crate) fn can_be_deleted(statement: &Stmt) -> bool {
     let Stmt::Expr(expression, end) = statement else { return false };
     match expression {

@@ -45,7 +45,7 @@ struct Expansion {
 pub(crate) struct Refusal {
     /// Text of the error as rustc prints it.
     pub(crate) text: String,
-    /// Places that the error is about, the most important one first, each as a file and a byte offset.
+    /// Places to which the error refers, the most important one first, each as a file and a byte offset.
     pub(crate) places: Vec<(String, usize)>,
 }
 
@@ -66,7 +66,7 @@ pub(crate) fn refusals(printed: &str) -> Vec<Refusal> {
         }
         Refusal { text: message.rendered.unwrap_or_default(), places }
     });
-    // "aborting due to …" is about no place.
+    // A summary such as "aborting due to …" has no place.
     refusals.filter(|refusal| !refusal.places.is_empty()).collect()
 }
 

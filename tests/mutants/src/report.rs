@@ -7,7 +7,7 @@ use crate::equivalent::Equivalent;
 use crate::mutant::Mutant;
 use crate::trial::{self, Outcome};
 
-/// Counts of mutants, and complaints about survivors and wrong entries.
+/// Counts of mutants, and complaints about survivors and wrong entries of `equivalent.toml`.
 #[derive(Debug, Default)]
 pub(crate) struct Report {
     files: BTreeMap<String, Counts>,
@@ -74,7 +74,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// Returns the text of an outcome for a report.
+/// Returns the description of an outcome in a report.
 pub(crate) fn verdict(outcome: Outcome) -> String {
     match outcome {
         Outcome::DoesNotCompile => "does not compile".to_owned(),
@@ -84,7 +84,7 @@ pub(crate) fn verdict(outcome: Outcome) -> String {
     }
 }
 
-/// Returns the text of an entry, in the form in which a mutant is printed.
+/// Returns the text of an entry in the form in which mutants are printed.
 pub(crate) fn name(entry: &Equivalent) -> String {
     format!("{} {}: {}", entry.file, entry.function, entry.change)
 }
