@@ -1,4 +1,5 @@
-//! Tests the book: its pages are linked, its links lead to existing pages, and its examples behave as the pages claim.
+//! Tests the book: its pages are linked, its links lead to existing pages, and its examples behave as the pages
+//! describe.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
@@ -51,7 +52,7 @@ fn messages_are_as_they_are_explained() {
     assert!(committed == messages(), "INSTA_UPDATE=always writes docs/src/messages.md");
 }
 
-/// The examples of a page, which are written one after the other into a folder.
+/// The examples of a page, which are executed in order in a folder.
 struct Walk<'p> {
     page: &'p TextFile,
     folder: PathBuf,
@@ -84,14 +85,14 @@ impl Walk<'_> {
             "diff" => self.patch(fence),
             "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
             "text" => self.compare(fence),
-            // Later commands of the page use these files; tests/compiled builds the packages of a page.
+            // Later commands of the page use these files; the packages of a page are built in tests/compiled.
             "commands" | "csv" | "json" | "python" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
             "sh" => {}
             other => panic!("{}: what is `{other}`?", self.page.path),
         }
     }
 
-    /// Changes a file as a reader does: replaces the lines that are marked `-` by the lines after them that are marked
+    /// Changes a file as a reader does: replaces the lines that are marked `-` with the following lines that are marked
     /// `+`.
     fn patch(&self, fence: &Fence) {
         let path = self.folder.join(fence.file().expect("a file to change"));
@@ -108,7 +109,7 @@ impl Walk<'_> {
         fs::write(path, text).unwrap();
     }
 
-    /// If the block names a file, compares the file with the text on the page.
+    /// Compares the block with the file that it names, if it names one.
     fn compare(&self, fence: &Fence) {
         let Some(file) = fence.file() else { return };
         assert_eq!(fs::read_to_string(self.folder.join(file)).unwrap(), fence.text, "{}: {file}", self.page.path);
@@ -143,7 +144,7 @@ impl Walk<'_> {
         let output = match words[0] {
             "mdlec" => run_mdlec(&self.folder, &words[1..]),
             "mdle" => Command::new(mdle()).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
-            // By the name that is typed, which the program may print.
+            // The program is called by the typed name, because it may print this name.
             program => Command::new(program).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
         };
         let answer = answer(&output);
@@ -156,7 +157,7 @@ impl Walk<'_> {
 }
 
 impl Walk<'_> {
-    /// Compares the pictures on the page with the pictures that the page's commands have drawn.
+    /// Compares the pictures on the page with the pictures that its commands have drawn.
     fn pictures(&self) {
         for picture in
             links(self.page).into_iter().filter(|link| link.ends_with(".svg") && self.folder.join(link).exists())
@@ -171,7 +172,7 @@ impl Walk<'_> {
     }
 }
 
-/// Returns the words of a command as a shell splits them; a quoted text is a single word.
+/// Splits a command into words as a shell does; a quoted text is a single word.
 fn words(command: &str) -> Vec<&str> {
     let mut is_quoted = false;
     let ends = command.split(|letter: char| {
@@ -185,7 +186,7 @@ fn answer(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
-/// Returns `true` if the output is equal to the page's text, except where a line `…` leaves text out.
+/// Returns `true` if the output is equal to the page's text, in which a line `…` stands for any omitted lines.
 fn is_alike(answer: &str, shown: &str) -> bool {
     match shown.split_once("…\n") {
         None => answer == shown,
@@ -196,7 +197,7 @@ fn is_alike(answer: &str, shown: &str) -> bool {
 #[test]
 fn examples_do_what_the_book_says() {
     let (pages, next, traces) = (pages(), AtomicUsize::new(0), AtomicUsize::new(0));
-    // Most commands use one processor.
+    // Pages are tested in parallel, because most commands use one processor.
     thread::scope(|scope| {
         for _ in 0..thread::available_parallelism().map_or(1, usize::from) {
             scope.spawn(|| {
@@ -210,7 +211,7 @@ fn examples_do_what_the_book_says() {
     assert!(traces >= 20, "the book has {traces} traces");
 }
 
-/// Asserts that the examples of a page behave as the page claims; returns the number of its traces.
+/// Asserts that the examples of a page behave as the page describes; returns the number of its traces.
 fn walked(page: &TextFile) -> usize {
     let folder = folder(&format!("book_{}", name(page)));
     let mut walk = Walk { page, folder, plan: String::new(), script: String::new() };

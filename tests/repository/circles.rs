@@ -1,15 +1,15 @@
 //! Tests that modules have no circular dependencies: modules of a folder that use each other, directly or through other
 //! modules, can only be understood together.
 //!
-//! A module includes all modules below it, and a file counts without its tests. If a module takes a name from its
-//! parent, and the parent has it from another module, the module depends on that other module. If the parent itself
-//! defines the name, there is no circle, because the modules of a folder share the types of their parent.
+//! A module includes its submodules, and tests in a file do not count. If a module uses a name from its parent and the
+//! parent takes this name from a third module, the first module depends on the third. A name that the parent defines
+//! itself causes no circle, because the modules of a folder share the types of their parent.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use mdle_tests::repository::{TextFile, files, names_from};
 
-/// The modules of a folder. Each has its text and the texts of all modules below it, each with its depth below the
+/// The modules of a folder. Each has its own text and the texts of its submodules, each with its depth below the
 /// module.
 type Modules = BTreeMap<String, Vec<(usize, String)>>;
 
@@ -26,7 +26,7 @@ fn modules_use_each_other_in_no_circle() {
     assert_eq!(found, [""; 0], "move what both need into a module of its own, or into the parent");
 }
 
-/// Returns the file without its tests; `None` for a test file, and for a file outside the `src` of any package.
+/// Returns the file without its tests, or `None` for a test file and for a file outside the `src` of all packages.
 fn without_tests(file: TextFile) -> Option<TextFile> {
     let is_test =
         file.path.ends_with("/tests.rs") || file.path.contains("/tests/") || file.path.ends_with("/samples.rs");
@@ -34,7 +34,7 @@ fn without_tests(file: TextFile) -> Option<TextFile> {
     (file.path.contains("/src/") && !is_test).then_some(TextFile { text, ..file })
 }
 
-/// Returns the circles among the modules of a folder.
+/// Returns the circular dependencies among the modules of a folder.
 fn circles(folder: &str, sources: &[TextFile]) -> Vec<String> {
     let mut modules = Modules::new();
     let mut parent = String::new();
@@ -49,7 +49,7 @@ fn circles(folder: &str, sources: &[TextFile]) -> Vec<String> {
             modules.entry(name).or_default().push((inside.matches('/').count(), file.text.clone()));
         }
     }
-    // What the parent has from each of its modules.
+    // Names that the parent takes from each of its modules.
     let shared: BTreeMap<_, _> = modules.keys().map(|name| (name.as_str(), names_from(&parent, name))).collect();
     let root = folder.split_once("src").map_or("", |(_, inside)| inside).replace('/', "::");
     let uses: BTreeMap<_, BTreeSet<_>> = modules

@@ -35,8 +35,8 @@ fn no_code_is_without_a_test() {
     }
 }
 
-/// Returns the tests in a file: the whole text of a snapshot or of a test file, and the part with the tests of any
-/// other file. Returns `None` if there are none.
+/// Returns the tests in a file: the whole text of a snapshot or of a test file, or the part of any other file from its
+/// tests on. Returns `None` if there are no tests.
 fn what_is_tested(file: &TextFile) -> Option<String> {
     let is_test = file.path.starts_with("tests/")
         || file.path.contains("/tests/")

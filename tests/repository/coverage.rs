@@ -1,4 +1,4 @@
-//! Tests that the table `coverage.toml` is complete and correct: each production of the grammar, each rule of the
+//! Tests that the table `coverage.toml` is complete and correct: each production of the grammar, each rule for the
 //! meaning of plans, and each code of a diagnostic has a test that exists.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -30,7 +30,7 @@ struct Covered {
     covers: Vec<String>,
 }
 
-/// A rule of the meaning of plans, with its tests.
+/// A rule for the meaning of plans, with its tests.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Rule {
@@ -43,7 +43,7 @@ fn table() -> Table {
     toml::from_str(&std::fs::read_to_string(root().join("tests/coverage.toml")).unwrap()).expect("the table")
 }
 
-/// Returns the texts of all tests in the repository. The keys have the form `path: name`.
+/// Returns the texts of all tests in the repository, with keys of the form `path: name`.
 fn tests() -> BTreeMap<String, String> {
     let mut tests = BTreeMap::new();
     for TextFile { path, text } in files(&[".rs"]) {
@@ -63,7 +63,7 @@ fn assert_none(breaches: &[String]) {
     assert!(breaches.is_empty(), "{}", breaches.join("\n"));
 }
 
-/// Returns a message for each name that is missing in the table, is in it twice, or does not exist.
+/// Returns a message for each name that the table lacks or contains twice, and for each name in it that does not exist.
 fn differences<'a>(all: impl Iterator<Item = &'a str>, listed: impl Iterator<Item = &'a str>) -> Vec<String> {
     let all: BTreeSet<_> = all.collect();
     let mut seen = BTreeSet::new();
@@ -116,7 +116,8 @@ fn every_rule_has_tests_and_the_rules_are_in_order() {
     assert_none(&without);
     let chapter = |section: &str| section.split('.').next().map(str::to_owned);
     assert!(table.rules.is_sorted_by_key(|rule| chapter(&rule.section)));
-    // Every section of the reference that has no sections of its own; the first defines terms.
+    // Every section of the reference without subsections must have rules, except the first section, which defines
+    // terms.
     let reference =
         pages().into_iter().find(|page| page.path == "docs/src/reference/semantics.md").expect("the reference");
     let numbers = numbered_sections(&reference);
@@ -150,7 +151,7 @@ fn a_production_stands_in_a_plan_of_its_tests() {
     assert_none(&breaches);
 }
 
-/// Returns the texts between quotes in the body of a test.
+/// Returns the quoted texts in the body of a test.
 fn texts(body: &str) -> Vec<String> {
     let mut texts = Vec::new();
     let mut rest = body;

@@ -1,5 +1,4 @@
-//! Tests the dependency rules of the architecture, between packages and between the rooms of the compiler
-//! (ARCHITECTURE.md).
+//! Tests the dependency rules of ARCHITECTURE.md, between packages and between the rooms of the compiler.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -9,7 +8,7 @@ use std::process::Command;
 use crate::packages::PACKAGES;
 use mdle_tests::repository::{TextFile, files, names_from, root};
 
-/// Packages that need no operating system, so that they can be used in a browser or in the program of a robot.
+/// Packages that do not need an operating system, and can therefore run in a browser or in the program of a robot.
 const PURE: &[&str] = &[
     "runtime/core",
     "runtime/quantity",
@@ -23,7 +22,7 @@ const PURE: &[&str] = &[
     "web/module",
 ];
 
-/// Packages that need an operating system, or that use its arguments, signals, threads or folders.
+/// Packages that need an operating system, or use its arguments, signals, threads or folders.
 const OF_THE_SYSTEM: &[&str] = &[
     "clap",
     "clap_builder",
@@ -116,7 +115,7 @@ fn pure_packages_need_no_operating_system() {
         let system: Vec<_> = OF_THE_SYSTEM.iter().filter(|name| needed.contains(**name)).collect();
         assert!(system.is_empty(), "{package} needs {system:?}; `cargo tree --invert NAME` says by which package");
     }
-    // The names are those that cargo has for what the host needs.
+    // This checks that the names in the list are those that cargo prints.
     assert!(
         ["clap", "rustix", "signal-hook", "thread-priority"].iter().all(|name| needed("runtime/host").contains(*name))
     );
@@ -124,7 +123,7 @@ fn pure_packages_need_no_operating_system() {
 
 #[test]
 fn emulators_are_built_on_the_libraries_of_executables() {
-    // With other features, a library and all that is built on it would be compiled anew.
+    // If the features differed, a library and all packages that depend on it would be compiled again.
     let libraries = |folder: &str| -> BTreeSet<String> {
         tree(folder, "{p} [{f}]", &["x86_64-unknown-linux-gnu"]).lines().map(str::to_owned).collect()
     };
@@ -138,7 +137,7 @@ fn emulators_are_built_on_the_libraries_of_executables() {
     }
 }
 
-/// Returns the packages with which the package in `folder` is built on Linux or in a browser, including the package
+/// Returns the packages that the build of the package in `folder` includes on Linux or in a browser, with the package
 /// itself.
 fn needed(folder: &str) -> BTreeSet<String> {
     let packages = tree(folder, "{p}", &["x86_64-unknown-linux-gnu", "wasm32-unknown-unknown"]);
@@ -150,7 +149,8 @@ fn needed(folder: &str) -> BTreeSet<String> {
         .collect()
 }
 
-/// Returns a line in the format `format` for each package with which the package in `folder` is built on these targets.
+/// Returns a line in the format `format` for each package that the build of the package in `folder` includes on these
+/// targets.
 fn tree(folder: &str, format: &str, targets: &[&str]) -> String {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
@@ -162,7 +162,7 @@ fn tree(folder: &str, format: &str, targets: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("names")
 }
 
-/// Returns the packages of the workspace that a manifest lists as dependencies of any kind.
+/// Returns the workspace's packages that a manifest lists as dependencies of any kind.
 fn ours(manifest: &TextFile) -> impl Iterator<Item = &str> {
     let mut in_dependencies = false;
     manifest.text.lines().filter_map(move |line| {
@@ -201,14 +201,14 @@ fn rooms_of_the_compiler_use_only_those_before_them() {
 struct Room {
     /// Name of the room.
     room: String,
-    /// Path of the file from its package's `src`.
+    /// Path of the file, relative to its package's `src`.
     inside: String,
     /// Text of the file, without tests.
     file: TextFile,
 }
 
-/// Returns the files of the compiler's rooms without their tests. A `lib.rs` belongs to no room, because it shows all
-/// stages on one screen. Files that only tests share belong to no room either.
+/// Returns the files of the compiler's rooms, without their tests. A `lib.rs` belongs to no room, because it shows all
+/// stages on one screen; neither do files that only tests share.
 fn rooms() -> impl Iterator<Item = Room> {
     files(&[".rs"]).into_iter().filter_map(|file| {
         let inside = ROOM_FOLDERS.iter().find_map(|(folder, _)| file.path.strip_prefix(folder))?.to_owned();
@@ -220,11 +220,11 @@ fn rooms() -> impl Iterator<Item = Room> {
     })
 }
 
-/// Returns the first line in which `super::` leads out of the room. Such a line could use other rooms without naming
+/// Returns the first line in which `super::` leads out of the room, and which could use other rooms without naming
 /// `crate::`.
 fn climbs_to_the_root<'f>(inside: &str, file: &'f TextFile) -> Option<&'f str> {
     let folders = inside.matches('/').count();
-    // room.rs and room/mod.rs are one step below the root.
+    // room.rs and room/mod.rs are one level below the root.
     let depth = if inside.ends_with("/mod.rs") { folders } else { folders + 1 };
     let climb = "super::".repeat(depth);
     file.text.lines().map(str::trim).find(|line| !line.starts_with("//") && line.contains(&climb))
@@ -232,7 +232,7 @@ fn climbs_to_the_root<'f>(inside: &str, file: &'f TextFile) -> Option<&'f str> {
 
 #[test]
 fn machines_written_from_the_rules_share_no_stepping_with_others() {
-    // What they may take from the lowering: the limit of what is expanded, and the matrices themselves.
+    // From the lowering, the machines may only use the limit of expanded states and the matrices.
     let machines = [
         ("tree", &[][..]),
         ("table", &["expanded_states"]),
@@ -264,7 +264,7 @@ fn machines_written_from_the_rules_share_no_stepping_with_others() {
 fn the_lowering_is_validated_by_code_of_its_own() {
     let path = "mdlec/compiler/src/fsm/validation.rs";
     let file = files(&[".rs"]).into_iter().find(|file| file.path == path).expect(path);
-    // Of the lowering it may know what a machine is, and of the runtime what its tables are.
+    // From the lowering it may only use the definition of a machine, and from the runtime that of its tables.
     assert_eq!(names_from(&file.text, "super"), ["Draft", "RecordPlace", "Sizes"]);
     assert_eq!(names_from(&file.text, "mdle_runtime"), ["fsm", "Here", "Radians"]);
     assert_eq!(names_from(&file.text, "mdle_runtime::fsm"), ["Bracket", "Kind"]);
@@ -279,7 +279,7 @@ fn tables_of_a_machine_are_read_by_its_face() {
             let kinds = names_from(&file.text, "mdle_runtime::fsm").contains(&"Kind".to_owned());
             breaches.extend(kinds.then(|| format!("{}: an element has a kind of its own", file.path)));
         }
-        // Lowering writes the tables, the face reads them, and validation shares no code with either.
+        // The tables are written by the lowering and read by `element`; validation shares no code with either.
         let has_tables = ["lower", "element", "validation"].map(|name| format!("mdlec/compiler/src/fsm/{name}.rs"));
         let uses_machines = room == "fsm" || names_from(&file.text, "crate").contains(&"fsm".to_owned());
         if has_tables.contains(&file.path) || !uses_machines {
@@ -294,7 +294,7 @@ fn tables_of_a_machine_are_read_by_its_face() {
 
 #[test]
 fn the_host_is_generic_in_few_files() {
-    // What is generic over a plan or its robot is compiled in the crate of each plan.
+    // Code that is generic over a plan or its robot is compiled again in the crate of each plan.
     let generic =
         ["drive", "executable", "helm", "lib", "pilot", "position", "supervisor", "target", "target_options", "trials"]
             .map(|name| format!("runtime/host/src/{name}.rs"));
@@ -311,7 +311,7 @@ fn the_host_is_generic_in_few_files() {
     assert_eq!(breaches, [""; 0]);
 }
 
-/// Returns the lines that access an entry of a machine's tables by its index.
+/// Returns the lines that access an entry of a machine's tables by index.
 fn indexed(text: &str) -> impl Iterator<Item = &str> {
     let tables = ["brackets", "scopes", "atoms", "laws"];
     let takes = ["[", ".get(", ".get_mut("];

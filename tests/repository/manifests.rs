@@ -1,13 +1,13 @@
-//! Tests that targets that a manifest excludes from `cargo test` contain no tests. Without the exclusion, each target
-//! would be compiled and linked once more, and rustdoc would read each library.
+//! Tests that targets that a manifest excludes from `cargo test` contain no tests. They are excluded to save time:
+//! cargo would compile and link each target once more, and rustdoc would read each library.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_tests::repository::files;
 use toml::Table;
 
-/// A target of a package.
+/// A cargo target of a package.
 struct Target {
-    /// Path of its root file from the root of the repository.
+    /// Path of the target's root file from the root of the repository.
     path: String,
     /// The target's table in the manifest.
     table: Table,
@@ -50,12 +50,12 @@ fn has_examples(text: &str) -> bool {
     let lines = text.lines().map(str::trim_start);
     let documentation = lines.filter_map(|line| line.strip_prefix("///").or_else(|| line.strip_prefix("//!")));
     let fences = documentation.filter_map(|line| line.trim_start().strip_prefix("```"));
-    // Every other one ends a block.
+    // Every second fence ends a block.
     fences.step_by(2).any(|language| !["text", "mdle", "toml", "console"].contains(&language))
 }
 
 /// Asserts that `has` is `false` for all files of the targets that set `flag` to `false`. `is_in` returns `true` if a
-/// path is a file of a target.
+/// file with this path belongs to the target.
 fn assert_none(targets: &[Target], flag: &str, is_in: fn(&Target, &str) -> bool, has: fn(&str) -> bool) {
     let left_out: Vec<_> = targets.iter().filter(|target| target.is_without(flag)).collect();
     assert!(left_out.len() > 3, "{} targets without {flag}", left_out.len());
@@ -67,7 +67,7 @@ fn assert_none(targets: &[Target], flag: &str, is_in: fn(&Target, &str) -> bool,
 #[test]
 fn what_is_not_built_to_be_tested_has_no_tests() {
     assert_none(&targets("bin"), "test", |target, path| target.path == path, has_tests);
-    // Tests in the folder `tests` of the same package are targets of their own.
+    // Tests in the package's folder `tests` are separate targets.
     let is_inside = |target: &Target, path: &str| path.starts_with(target.path.trim_end_matches("lib.rs"));
     assert_none(&targets("lib"), "test", is_inside, has_tests);
     assert_none(&targets("lib"), "doctest", is_inside, has_examples);

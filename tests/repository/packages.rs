@@ -1,7 +1,7 @@
-//! The packages of the workspace, with the packages that each of them may use.
+//! The packages of the workspace, each with the packages that it may use.
 
-/// Folders of the packages of the workspace, each with the packages of the workspace that it may use. Any other folder
-/// must not contain a package.
+/// Folders of the workspace's packages, each with the packages of the workspace that it may use. No other folder may
+/// contain a package.
 pub(crate) const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/core", &[]),
     ("runtime/quantity", &["mdle-runtime"]),
@@ -51,16 +51,17 @@ pub(crate) const PACKAGES: &[(&str, &[&str])] = &[
         ],
     ),
     ("targets/sim/simulator", &["mdle-runtime", "mdle-quantity", "mdle-sound", "mdle-atoms"]),
-    // The conformance of robots is there for their tests alone.
+    // The conformance suite is used only in tests.
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-simulator", "mdle-conformance"]),
     ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
     ("targets/atrv", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
-    // The simulator and the conformance are there for its tests alone.
+    // The simulator and the conformance suite are used only in tests.
     ("targets/ros2", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms", "mdle-simulator", "mdle-conformance"]),
     ("targets/template", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-conformance"]),
-    // The runtime, the line and the conformance are there for the tests of robots alone.
+    // The runtime, the serial line and the conformance suite are used only in tests of robots.
     ("targets/emulator", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-simulator", "mdle-conformance"]),
-    // The drivers and the conformance of robots are there for their tests alone: they share no word of the language.
+    // The drivers and the conformance suite are used only in tests, so that driver and emulator share no code for the
+    // protocol.
     (
         "targets/scout/emulator",
         &["mdle-runtime", "mdle-host", "mdle-conformance", "mdle-simulator", "mdle-emulator", "mdle-scout"],

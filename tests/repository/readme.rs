@@ -19,7 +19,7 @@ fn its_first_plan_is_the_one_in_plans() {
     assert_eq!(code(shown), code(&plan));
 }
 
-/// Returns the lines of a plan without its comments and empty lines.
+/// Returns the lines of a plan without comments and empty lines.
 fn code(plan: &str) -> Vec<&str> {
     let lines = plan.lines().map(|line| line.split("//").next().unwrap_or_default().trim_end());
     lines.filter(|line| !line.is_empty()).collect()

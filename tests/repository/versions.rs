@@ -9,10 +9,10 @@ use toml::{Table, Value};
 /// Version of the workspace, which is also that of this package.
 const NUMBER: &str = env!("CARGO_PKG_VERSION");
 
-/// Packages that users copy or write, and for which they choose a version.
+/// Packages that users copy or write, and whose versions users choose.
 const OF_USERS: [&str; 3] = ["runtime/template/", "targets/template/", "tests/application/"];
 
-/// Files of the editors' packages; each has its version in the first `"version"`.
+/// Files of the editors' packages. In each, the first `"version"` is that of the package.
 const EDITORS: [&str; 3] =
     ["editors/test/package.json", "editors/tree-sitter/tree-sitter.json", "editors/vscode/package.json"];
 

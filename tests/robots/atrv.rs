@@ -1,6 +1,6 @@
 //! Tests the lab tour on an ATRV-mini: the executable that `mdlec --target atrv` builds drives the emulated robot over
 //! a pseudo-terminal, and is compared with a run of the simulator with the same body. Also tests the messages about a
-//! device that is not a robot.
+//! device without a robot.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -18,7 +18,7 @@ use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;
 
-/// Pace of the emulator, in which no result depends on the speed of this machine.
+/// Pace of the emulator, for which no result depends on the speed of this machine.
 const IN_LOCKSTEP: Pace = Pace::Lockstep(Duration::from_millis(100));
 
 /// Returns the tour's executable for the ATRV, which is built once.
@@ -169,7 +169,7 @@ fn a_robot_that_is_none_is_a_fault() {
     let busy = busy.path().to_str().unwrap();
     let mut emergency = robot(IN_LOCKSTEP);
     emergency.emergency = true;
-    // In lockstep a driver waits for long, so all of them do so at once.
+    // The drivers run at the same time, because in lockstep a driver waits for long.
     let answers = thread::scope(|scope| {
         let noise = b"Noise on the line.".to_vec();
         let answers = [Vec::new(), noise, report(9, 0, 4, &[0; 25], &[]), report(2, 0, 33, &[0; 24], &[])];
@@ -185,8 +185,8 @@ fn a_robot_that_is_none_is_a_fault() {
     insta::assert_snapshot!(all.join("\n"));
 }
 
-/// A robot to which an event happens once it moves. The event returns `true` if it silences the robot; the last field
-/// is `true` once the robot is silent.
+/// A robot to which an event happens once it moves. The event returns `true` to silence the robot; the last field is
+/// `true` once the robot is silent.
 struct Then(Atrv, fn(&mut Atrv) -> bool, bool);
 
 impl Emulated for Then {
@@ -227,7 +227,7 @@ fn a_robot_that_fails_on_its_way_is_stopped() {
         let end = listed.find("error:").map(|place| listed.split_at(place).1);
         end.unwrap_or(&listed).to_owned()
     };
-    // It says nothing more, though it understands; or somebody presses its emergency stop.
+    // The robot sends nothing more, though it still receives; or its emergency stop is pressed.
     let silent = on_its_way(|_| true);
     let stopped = on_its_way(|robot| {
         robot.emergency = true;

@@ -1,4 +1,4 @@
-//! Tests several runs of a plan by the executable that `mdlec` builds: their summary, and that the summary is correct.
+//! Tests batches, several runs of a plan by the executable that `mdlec` builds: the summary, and that it is correct.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -36,7 +36,7 @@ fn text(bytes: Vec<u8>) -> String {
     String::from_utf8(bytes).unwrap()
 }
 
-/// Options with such a large random offset of the start that runs end in all possible ways.
+/// Options with a random offset of the start that is large enough for runs to end in every possible way.
 const OFF: [&str; 8] = ["--goal", "world", "--runs", "40", "--start-noise", "0.1,50", "--seed", "7"];
 
 #[test]

@@ -1,5 +1,5 @@
-//! Tests a building that was drawn after the control laws had been written, and two plans for it in the style of a
-//! reader of the book. Neither plan was changed after its first run.
+//! Tests two plans, written as a reader of the book would, in a building that was drawn after the control laws had been
+//! written. Neither plan was changed after its first run.
 //!
 //! `MDLE_FIRST=8300000 MDLE_LONG=30` tries 300 seeds. With them, the ideal body and a Scout arrive in all runs by
 //! measures, and in 300 and 297 runs by landmarks. An ATRV-mini arrives in 248 and 282 runs. In its other runs it

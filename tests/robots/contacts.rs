@@ -1,9 +1,10 @@
-//! Tests all plans of `plans/` and of the book in every world in which they make sense, on every body: a robot comes
-//! into contact only if the plan requests contact. Such a plan has an atom whose own interrupt names `bumper`, and
-//! after a contact it backs off and turns as far as its author intends. The law `goAvoid` must never cause contact.
+//! Tests all plans of `plans/` and of the book in every world in which they make sense: a robot comes into contact only
+//! if the plan requests contact. Such a plan has an atom whose own interrupt names `bumper`, and after a contact it
+//! backs off and turns as far as its author intends. The law `goAvoid` must never cause contact.
 //!
-//! Each plan and world is driven on one body. `MDLE_LONG=300 cargo test --release -p mdle-tests --test robots
-//! contacts:: -- --nocapture` drives a hundred seeds on each of the three bodies; `MDLE_FIRST` is the first seed.
+//! By default, each plan is driven on one body in each world. `MDLE_LONG=300 cargo test --release -p mdle-tests --test
+//! robots contacts:: -- --nocapture` drives a hundred seeds on each of the three bodies; `MDLE_FIRST` is the first
+//! seed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test tells")]
 
 mod table;
@@ -26,7 +27,7 @@ const LONGEST: Duration = Duration::from_secs(150);
 /// A floor whose walls are 50 m from the start.
 const FLOOR: &str = "[[wall]]\npoints = [[-50, -50], [50, -50], [50, 50], [-50, 50], [-50, -50]]\n";
 
-/// Returns all plans of the repository that the simulator can run, without duplicates, each with its file or the page
+/// Returns all plans of the repository that the simulator can run, without duplicates, each with its file or its page
 /// of the book.
 fn all_plans() -> Vec<(String, Driven)> {
     let mut all = Vec::new();
@@ -45,7 +46,7 @@ fn all_plans() -> Vec<(String, Driven)> {
     all
 }
 
-/// Returns the text of a block in which each `use` of a file is replaced by the page's block for this file.
+/// Returns the text of a block with each `use` of a file replaced by the page's block for this file.
 fn with_used(text: &str, blocks: &[Fence]) -> String {
     let file = |line: &str| Some(line.strip_prefix("use \"")?.strip_suffix('"')?.to_owned());
     let used = |path: String| blocks.iter().find(|block| block.file().is_some_and(|file| file.ends_with(&path)));
@@ -56,7 +57,7 @@ fn with_used(text: &str, blocks: &[Fence]) -> String {
     text.lines().map(line).collect()
 }
 
-/// Returns a file that a page of the book writes.
+/// Returns the text of a file that a page of the book writes.
 fn of_book(page: &str, file: &str) -> String {
     let page = pages().into_iter().find(|other| name(other) == page).unwrap();
     fences(&page).into_iter().find(|fence| fence.file() == Some(file)).unwrap().text
@@ -79,7 +80,7 @@ fn world(name: &str) -> World {
     }
 }
 
-/// Returns the path that the book shows.
+/// Returns a store with the path that the book shows.
 fn paths() -> PathStore {
     let fastest = Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) };
     let setpoints = mdle_host::setpoints("bend.csv", of_book("quarks.md", "bend.csv").as_bytes(), fastest).unwrap();
@@ -89,7 +90,7 @@ fn paths() -> PathStore {
 /// Contacts of a plan in a world.
 #[derive(Default)]
 struct Touched {
-    /// For each run with a contact that the plan did not request, a line about the first such contact.
+    /// A line about the first contact that the plan did not request, for each run with such a contact.
     unasked: Vec<String>,
     /// Number of contacts during atoms whose interrupt names `bumper`.
     by_bumper: usize,
@@ -99,7 +100,7 @@ struct Touched {
 fn touched(row: &Row, plan: &Driven, place: &str, paths: PathStore, runs: u64) -> Touched {
     let (world, mut touched) = (world(place), Touched::default());
     for run in 0..runs {
-        // Another plan begins with another body.
+        // The first body depends on the plan and the world.
         let seed = first_seed(0) + run / 3;
         let body = BODIES[(run as usize + plan.name.len() + place.len()) % BODIES.len()];
         let contacts = plan.drive(robot(body, &world, seed), paths, LONGEST).contacts;

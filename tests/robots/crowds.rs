@@ -1,5 +1,5 @@
-//! Tests `mdle run CROWD.toml`: the output is identical for any number of threads, robots never overlap, and a single
-//! robot drives as it does in a scenario.
+//! Tests `mdle run CROWD.toml`: the output does not depend on the number of threads, robots never overlap, and a single
+//! robot drives as in a scenario.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -27,7 +27,7 @@ fn crowd(folder: &Path, keys: &str) {
     fs::write(folder.join("crowd.toml"), format!("seed = 3\n[crowd]\nfile = \"wander.mdle\"\n{keys}")).unwrap();
 }
 
-/// Returns the places of all robots, by time.
+/// Returns the positions of all robots, by time.
 fn places(trail: &str) -> BTreeMap<String, Vec<[f64; 2]>> {
     let mut places: BTreeMap<String, Vec<[f64; 2]>> = BTreeMap::new();
     for line in trail.lines().skip(1) {
@@ -148,7 +148,7 @@ fn each_robot_of_a_crowd_has_a_record() {
         (1..=120).map(|robot| fs::read(folder.join(format!("run{threads}.{robot}.mcap"))).unwrap()).collect::<Vec<_>>()
     });
     let [one, other] = &records;
-    // The commands name the numbers of threads.
+    // Only the lengths are compared, because the recorded commands contain the numbers of threads.
     assert!(one.iter().zip(other).all(|(one, other)| one.len() == other.len()), "threads change a record");
     for robot in [1, 2, 60, 120] {
         let output = Command::new(mdle()).args(["replay", &format!("run2.{robot}.mcap")]).current_dir(&folder).output();

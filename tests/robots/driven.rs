@@ -1,4 +1,4 @@
-//! Loads a plan from text, and drives the simulated robot with it turn by turn.
+//! Loads a plan from text, and drives the simulated robot with the plan turn by turn.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -16,7 +16,7 @@ use mdle_tests::golden;
 use mdle_tests::repository::TextFile;
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// Maximum distance of a start from the world's start, along each axis in metres, and in heading in degrees.
+/// Maximum offset of a start from the world's start: along each axis in metres, and of the heading in degrees.
 const OFF: [f64; 2] = [0.05, 3.0];
 
 /// A loaded plan, which can be driven any number of times.
@@ -57,7 +57,7 @@ pub(crate) fn plans(path: &str, text: &str) -> Vec<Driven> {
         name: plan.root.name,
         loaded: Arc::new(load(&machine, &sources, &target).expect("a plan for the simulator")),
     };
-    // What reads modules or other robots needs an engine with them.
+    // A plan that reads modules or other robots needs an engine.
     let is_alone = |driven: &Driven| {
         let plan = driven.loaded.plan();
         plan.reads().is_empty() && plan.robots().is_empty()
@@ -90,7 +90,7 @@ pub(crate) fn robot(body: Body, world: &World, seed: u64) -> Simulated {
     panic!("{body} cannot stand at the start");
 }
 
-/// Returns the first random seed of a test: the number in the variable `MDLE_FIRST`, or else `usual`.
+/// Returns the first random seed of a test: the number in the variable `MDLE_FIRST`, or `usual` if it is not set.
 pub(crate) fn first_seed(usual: u64) -> u64 {
     std::env::var("MDLE_FIRST").map_or(usual, |text| text.parse().expect("a whole number"))
 }

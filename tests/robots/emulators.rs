@@ -1,4 +1,4 @@
-//! Tests `mdlec emulator`: the real binary builds a robot emulator and becomes it, and executables run on it.
+//! Tests `mdlec emulator`: the real binary builds a robot emulator and becomes its process, and executables run on it.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -11,12 +11,12 @@ use rustix::process::{Pid, Signal, kill_process};
 
 const PLAN: &str = "{ Ahead (bumper)\n  (Atom (wait 3s) (go 20 0))\n}\n";
 
-/// Starts an emulator whose device has the link `line` in `folder`, and returns it with its first line.
+/// Starts an emulator whose device has the link `line` in `folder`. Returns the emulator and its first line of output.
 fn started(folder: &Path, robot: &str) -> (Child, String) {
     let arguments = ["emulator", robot, "--", "--link", "line", "--lockstep", "100ms"];
     let mut emulator = command(folder, &arguments).stdout(Stdio::piped()).spawn().unwrap();
     let mut line = String::new();
-    // Nothing comes if the emulator ends instead.
+    // The line is empty if the emulator ends first.
     BufReader::new(emulator.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
     (emulator, line)
 }
@@ -29,7 +29,7 @@ fn assert_emulated(robot: &str, name: &str) {
     let (mut emulator, line) = started(&folder, robot);
     let plan = Command::new(folder.join("plan")).args(["--device", "line", "--lockstep"]).current_dir(&folder).output();
     let plan = plan.unwrap();
-    // The process that was started is the emulator by now, which ends well and takes its link away.
+    // The started process is now the emulator, which ends successfully and removes its link.
     kill_process(Pid::from_child(&emulator), Signal::INT).unwrap();
     assert!(emulator.wait().unwrap().success());
     assert!(line.starts_with(&format!("{name} is at /dev/")), "{line}");

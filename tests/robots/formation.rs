@@ -13,7 +13,7 @@ use mdle_tests::repository::root;
 use mdle_tests::ways::{Place, distance};
 use serde_json::Value;
 
-/// Places of the members relative to the leader: ahead and to the left, in metres.
+/// Target positions of the members relative to the leader: ahead and to the left, in metres.
 const PLACES: [(&str, Place); 2] = [("robot2", [-0.866, 0.5]), ("robot3", [-0.866, -0.5])];
 /// Time constant with which the triangle follows the leader's heading, in seconds. `PERIOD` is the period of a turn, in
 /// seconds.
@@ -37,7 +37,7 @@ fn run(folder: &Path, seed: u64, log: &str) -> Output {
     Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Returns the turns of a run; each contains the line of the log about each robot.
+/// Returns the turns of a run. Each turn contains the line of the log about each robot.
 fn turns(log: &Path) -> Vec<BTreeMap<String, Value>> {
     let mut turns: BTreeMap<u64, BTreeMap<String, Value>> = BTreeMap::new();
     for line in fs::read_to_string(log).unwrap().lines() {
@@ -56,8 +56,7 @@ fn place(of: &Value) -> Place {
     ["x", "y"].map(|axis| number(of, axis))
 }
 
-/// Returns the distances of the members from their places while the leader leads. All places are the true places of the
-/// robots.
+/// Returns how far the members are from their places, in true positions, while the leader leads.
 fn errors(turns: &[BTreeMap<String, Value>]) -> Vec<f64> {
     let mut direction = None;
     let mut errors = Vec::new();
@@ -77,7 +76,7 @@ fn errors(turns: &[BTreeMap<String, Value>]) -> Vec<f64> {
     errors
 }
 
-/// Runs the scenario with a few seeds, and asserts what the book promises about each run.
+/// Runs the scenario with a few seeds, and asserts the book's statements about each run.
 fn assert_keep(test: &str, more: &str, first: u64) {
     let folder = scenario(test, more);
     let mut all = Vec::new();
@@ -112,8 +111,8 @@ fn a_bad_link_does_not_break_the_triangle() {
 
 #[test]
 fn a_member_off_its_place_is_no_obstacle() {
-    // The third robot is 15 cm nearer than its odometry says: a leader that takes it for an obstacle turns away from it
-    // until all three stand at a wall.
+    // The third robot is 15 cm nearer than its odometry indicates: a leader that took it for an obstacle would turn
+    // away from it until all three robots were at a wall.
     assert_keep("formation_off", "\n[link]\nloss = 0.1\n", 9_990_704);
 }
 
@@ -122,7 +121,7 @@ fn a_contact_of_one_robot_stops_all() {
     let folder = scenario("formation_contact", "");
     let file = folder.join("floor.toml");
     let text = fs::read_to_string(&file).unwrap();
-    // Beside the leader, whose way is free, and ahead of a member.
+    // The box is beside the leader, whose path is free, and ahead of a member.
     fs::write(&file, text.replace("[3.5, 0.7]", "[-0.3, 0.6]")).unwrap();
     let report = String::from_utf8(run(&folder, 9_800_020, "log.jsonl").stdout).unwrap();
     let line = |robot: &str, words: &str| report.lines().any(|line| line.contains(robot) && line.contains(words));
@@ -136,12 +135,12 @@ fn a_triangle_that_fits_through_no_door_stays_outside() {
     let folder = scenario("formation_door", "");
     let wall = |y: f64, end: f64| format!("[[wall]]\npoints = [[3.5, {y}], [3.5, {end}]]\n");
     let floor = "[[wall]]\npoints = [[-3, -4], [10, -4], [10, 4], [-3, 4], [-3, -4]]\n".to_owned();
-    // One robot fits through 1 m, and three in a triangle of 1 m do not.
+    // A door of 1 m is wide enough for one robot, but not for a triangle with sides of 1 m.
     fs::write(folder.join("floor.toml"), floor + &wall(-4.0, -0.5) + &wall(0.5, 4.0)).unwrap();
     let output = run(&folder, 9_800_030, "log.jsonl");
     let report = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{report}");
-    // On the way along the wall a member may touch it, which stops all.
+    // A member that touches the wall while the robots drive along it stops all three.
     let over = report.lines().filter(|line| line.contains("plan over: wait 2 (triangle.mdle:")).count();
     assert_eq!(over, 3, "{report}");
     assert!(!report.contains("least gap between robots: 0.0 cm"), "{report}");
@@ -157,8 +156,8 @@ fn the_same_seed_gives_the_same_run() {
     assert!(bytes("one.jsonl") == bytes("other.jsonl"), "two runs of one seed differ");
 }
 
-/// A plan of a group of two, in which each robot turns and drives, and an atom ends for all robots when it has ended
-/// for the first one.
+/// A plan of a group of two, in which each robot turns and drives, and an atom ends for all robots when it ends for the
+/// first one.
 const PAIR: &str = "{ Group [robot1 robot2] Pair (any bumper OR wait 1min)
   (Atom (null) (rotate 90))
   (Atom (all rendezvous) stop)
@@ -166,7 +165,7 @@ const PAIR: &str = "{ Group [robot1 robot2] Pair (any bumper OR wait 1min)
 }
 ";
 
-/// Returns the folder of a scenario of robots with these names, 2 m apart, that all run the plan `pair.mdle`.
+/// Returns the folder of a scenario of robots with these names, 2 m apart, which all run the plan `pair.mdle`.
 fn pair(test: &str, robots: &[&str], more: &str) -> PathBuf {
     let folder = folder(test);
     fs::write(folder.join("pair.mdle"), PAIR.to_owned() + more).unwrap();

@@ -1,4 +1,4 @@
-//! Robots that repeat their last data: `[stale]` acts before the driver gives them up.
+//! Tests robots that repeat their last data: `[stale]` takes effect before the driver reports a fault.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -16,14 +16,15 @@ use mdle_tests::executable::{folder, mdle};
 
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// A robot in the hall.
+/// Returns a simulated robot in the hall.
 fn simulated(body: Body, step: Duration) -> Simulated {
     let world = World::named("hall").unwrap().unwrap();
     let make = Make { body, without: Vec::new(), seed: None };
     Simulated::with(&make, &world, world.start, step).unwrap()
 }
 
-/// Output and exit status of a plan that drives for a minute, on a robot that hangs after two seconds.
+/// Runs a plan that drives for a minute on a robot that hangs after two seconds. Returns the output and the exit
+/// status.
 fn ending<R: Emulated + Send>(folder: &Path, robot: R, pace: Pace, options: &[&str]) -> String {
     fs::write(folder.join("go.mdle"), "{ Go (wait 60s) (Atom (null) (go 20 0)) }\n").unwrap();
     fs::write(folder.join("stale.toml"), "[stale]\noutput = \"150ms\"\nthen = \"end\"\n").unwrap();
@@ -61,7 +62,8 @@ fn stale_data_of_a_scout_end_the_plan() {
     assert!(replayed.status.success() && text.contains("the same to the bit"), "{text}");
 }
 
-/// In lockstep the driver waits for a report in each turn; in real time a turn goes on with the last one.
+/// The test runs in real time, where a turn continues with the last report; in lockstep the driver waits for a report
+/// in each turn.
 #[test]
 fn stale_data_of_an_atrv_end_the_plan() {
     let (folder, pace) = (folder("hanging_atrv"), Pace::Real);

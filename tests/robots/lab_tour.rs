@@ -1,4 +1,4 @@
-//! Tests the paper's lab tour from end to end: it is compiled by the real `mdlec` and driven by the executable.
+//! Tests the paper's lab tour from end to end: the real `mdlec` compiles it, and the executable drives it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -111,7 +111,7 @@ fn it_goes_from_lab_2_past_lab_1_to_the_office() {
     );
     assert_in_zone(13, trail.last().unwrap().1);
     let record = fs::read_to_string(folder.join("record.svg")).unwrap();
-    // The title of a picture, the end of its film, and the last line of the run.
+    // The time of the end is in the picture's title and at the end of the film, as in the last line of the run.
     for clock in [format!(" over after {end} s: "), format!(">{end} s, shown ")] {
         assert!(record.contains(&clock), "{clock}");
     }
@@ -175,7 +175,7 @@ fn happenings(turn: &Value) -> Value {
     for transition in turn["fired"].as_array().unwrap() {
         match transition["by"].as_str().unwrap() {
             "completed" => completed.push(law(transition["from"].as_u64().unwrap())),
-            // Time decides.
+            // Timers depend on time only, so a script does not report them.
             text if text.starts_with("wait ") => {}
             text => fired.push(text),
         }
@@ -201,7 +201,7 @@ fn it_is_static() {
     let half = |at: usize| usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
     let headers = u64::from_le_bytes(bytes[32..40].try_into().unwrap()) as usize;
     let kinds = (0..half(56)).map(|number| half(headers + number * half(54)));
-    // 3 is PT_INTERP: the path of a dynamic loader.
+    // 3 is PT_INTERP, the path of a dynamic loader.
     assert!(kinds.into_iter().all(|kind| kind != 3), "it needs a dynamic loader");
 }
 
@@ -262,7 +262,7 @@ fn run_passes_signals_to_the_executable() {
     for (signal, status) in [("TERM", 143), ("INT", 130)] {
         let mut command = mdle_tests::executable::command(&folder, &["run", "turns.mdle", "--target", "sim"]);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        // The plan runs once it has told of its second atom.
+        // The plan certainly runs once its second atom has been reported.
         let mut line = String::new();
         BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
         assert!(line.contains("  stop (turns.mdle:1"), "{line}");

@@ -1,5 +1,5 @@
-//! Tests that a run in which plans are late, skipped and rolled back can be repeated to the bit by an engine that does
-//! not wait for plans.
+//! Tests that an engine that does not wait for plans can repeat, to the bit, a run in which plans are late, skipped and
+//! rolled back.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::sync::Mutex;
@@ -22,7 +22,7 @@ const SECOND: &str = "{ Second (null) ((Atom (wait 200ms) (go -16 0.2)) (Atom (w
 /// Number of turns.
 const TURNS: u64 = 40;
 
-/// Locked by the test whose turns slow laws wait for.
+/// Locked by the test that controls the turns for which slow laws wait.
 static SLOW_TURNS: Mutex<()> = Mutex::new(());
 
 /// A turn of a run, with all data that determine it.
@@ -70,7 +70,7 @@ fn live() -> Vec<Made> {
         let outcome = turn(&mut engine, &y, number);
         input = outcome.0.input();
         turns.push(Made { y, t: y.at, changes: engine.take_changes(), outcome });
-        // So that a turn that is late can come back some turns later.
+        // Gives a late turn time to come back a few turns later.
         thread::sleep(PERIOD / 10);
     }
     TURN.store(u64::MAX, Ordering::Relaxed);
@@ -104,7 +104,8 @@ fn a_late_turn_loses_no_plan_that_waits() {
     let (mut engine, mut input, mut requests, mut events) = (engine(Time::Wall), Twist::default(), vec![], vec![]);
     for number in 0..9 {
         TURN.store(number, Ordering::Relaxed);
-        // The first plan is on its way with turn 3, which is late, when the second one is armed.
+        // The first requested plan was passed on with turn 3, which is late and still runs when the second one is
+        // armed.
         if [3, 4].contains(&number) {
             requests.push(engine.plans_mut().replace(loaded(SECOND).plan(), When::PlanEnds));
         }

@@ -1,4 +1,4 @@
-//! Tests the modules `pings` and `map`: with `--map`, an evidence grid is made while the robot drives.
+//! Tests the modules `pings` and `map`: with `--map`, an evidence grid is built while the robot drives.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -48,7 +48,7 @@ fn a_map_of_a_run_is_that_of_its_record() {
         let greys = &live.1[0];
         let known = greys[greys.len() - 150 * 150..].iter().filter(|grey| **grey != 128).count();
         assert!(known > 3000, "{body}: {known} cells are known");
-        // What repeats the run writes no map.
+        // The command that repeats the run writes no map.
         let info = text(&run(&folder, &format!("log info {body}.mcap")));
         assert!(info.contains("run around.mdle --target sim") && !info.contains("--map"), "{info}");
         let replayed = text(&run(&folder, &format!("replay {body}.mcap")));
@@ -100,7 +100,7 @@ fn a_session_saves_a_map_on_command() {
     "#);
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     let whole = map(&folder, "door");
-    // Saved once, 2 s after the start: the run is cut there, but for what is saved at its end.
+    // The map is saved 2 s after the start and replaced by the final one at the end of the run.
     fs::write(folder.join("commands"), "wait 2s\nset /usr/map/save true\nwait 1s\nquit\n").unwrap();
     let output = run(&folder, &format!("shell around.mdle --paused -c commands {words} --map short.yaml"));
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
@@ -142,7 +142,7 @@ fn a_map_that_becomes_impossible_is_a_fault() {
     let folder = folder("impossible");
     fs::write(folder.join("around.mdle"), AROUND).unwrap();
     fs::create_dir(folder.join("maps")).unwrap();
-    // The folder vanishes while the robot drives, by a child process.
+    // A child process removes the folder while the robot drives.
     let remove = "exec python3 -c \"print('{}',flush=True);__import__('shutil').rmtree('maps',True)\"";
     let words =
         ["run", "around.mdle", "--target", "sim", "--world", "office", "--speed", "max", "--map", "maps/a.yaml"];
@@ -158,7 +158,7 @@ fn a_map_that_cannot_be_saved_is_saved_later() {
     let folder = folder("later");
     fs::write(folder.join("around.mdle"), AROUND).unwrap();
     fs::create_dir(folder.join("maps")).unwrap();
-    // A child process takes the folder away before the first turn, and brings it back after 2.5 s.
+    // A child process moves the folder away before the first turn, and restores it after 2.5 s.
     let child = "import os, sys\nos.rename('maps', 'away')\nprint('{}', flush=True)\nturn = 0\n\
                  for line in sys.stdin:\n    turn += 1\n    if turn == 25:\n        os.rename('away', 'maps')\n    print('{}', flush=True)\n";
     fs::write(folder.join("away.py"), child).unwrap();

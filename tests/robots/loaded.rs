@@ -1,5 +1,5 @@
 //! Compares `mdle run` with the executable of the same plan: report, messages, log and trail are identical byte for
-//! byte, and the exit status is equal.
+//! byte, and the exit statuses are equal.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -12,7 +12,7 @@ use mdle_tests::run_output::{
     FILES, RunOutput, called, emulated_run, in_simulator, left, loaded, simulated_run, warnings,
 };
 
-/// Runs the plan in a file loaded and as its executable, with the same options, and compares the output and files of
+/// Runs the plan in a file, loaded and as an executable, with the same options, and compares the output and files of
 /// both runs. The warnings about the plan, which `mdlec` prints at build time, are added to the messages of the
 /// executable.
 fn compare(folder: &Path, file: &str, target: &str, options: &[&str]) -> RunOutput {

@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 
 use mdle_tests::executable::{folder, mdle};
 
-/// Runs a scenario in which the robots `ada` and `bob`, 3 m apart, run these plans; returns the report.
+/// Runs a scenario in which the robots `ada` and `bob`, 3 m apart, run these plans. Returns the report.
 fn meets(test: &str, more: &str, ada: &str, bob: &str) -> String {
     let folder = folder(test);
     let mut text = more.to_owned();
@@ -72,7 +72,7 @@ fn sync_is_true_while_states_arrive() {
     let ada = "{ A (wait 1min) (Atom (sync bob) stop) (Atom (NOT sync bob) (go 0 0)) }";
     let bob = "{ B (Atom (wait 2) stop) }";
     let report = meets("sync_ends", "", ada, bob);
-    // The last state of bob is that of the turn in which its plan is over, and arrives a turn later.
+    // The last state that bob sends is that of the turn in which its plan is over; it arrives a turn later.
     assert_eq!(course(&report, "ada"), [("0.1", "go"), ("2.6", "plan")], "{report}");
 }
 

@@ -1,5 +1,5 @@
-//! Tests faults of modules that a plan reads: the plan ends because of the age of the values that it reads, the robot
-//! then stops, the operator gets a message, and no turn hangs.
+//! Tests faults of modules that a plan reads: the plan ends because of the age of the values, the robot then stops, the
+//! operator gets a message, and no turn hangs.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
@@ -66,7 +66,7 @@ impl Module<Sensed> for Ears {
     }
 }
 
-/// A background module with a fault that begins with its exchange number [`FAULT`].
+/// A background module with a fault that begins in the exchange with the number [`FAULT`].
 struct Listens {
     bearing: Out<Radians>,
     deed: &'static str,
@@ -98,7 +98,7 @@ impl Background for Listens {
 }
 
 /// Runs the plan with these modules. Returns all messages with their turns, the end of the plan, and the number of
-/// turns from the fault until the robot was sent the null input.
+/// turns from the fault to the null input.
 fn story(library: &Library<Sensed>, time: Time, mut each: impl FnMut(&mut Run)) -> String {
     let mut run = match Run::begin(PLAN, library, time) {
         Ok(run) => run,
@@ -146,7 +146,7 @@ fn a_robot_stands_soon_after_a_module_has_failed() {
     };
     let stepped = report(Time::Stepped(Pace::Max), &deeds);
     assert_eq!(report(Time::Wall, &deeds), stepped, "workers");
-    // In stepped time nobody waits for a module to be late.
+    // This fault is tested in real time only: in stepped time the engine waits for a late module.
     insta::assert_snapshot!(format!("{stepped}\n{}", report(Time::Wall, &[Deed::NeverReturns])));
 }
 

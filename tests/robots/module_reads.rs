@@ -24,12 +24,12 @@ fn report(folder: &Path, plan: &str, ears: &str) -> String {
     format!("{out}{err}[{}]\n", status.code().unwrap())
 }
 
-/// Returns the command of a process with this declaration that publishes nothing.
+/// Returns the command of a process with this declaration that publishes no values.
 fn silent(declaration: &str) -> String {
     format!("echo '{declaration}'; while read line; do echo '{{}}'; done")
 }
 
-/// Returns the command of a process that needs `seconds` for each answer. `latency` is a part of its declaration.
+/// Returns the command of a process that takes `seconds` for each answer. `latency` is a part of its declaration.
 fn slow(seconds: f64, latency: &str) -> String {
     format!(
         "echo '{{\"publishes\": {{\"range\": \"m\"}}{latency}}}'; while read line; do sleep {seconds}; \

@@ -1,5 +1,5 @@
-//! Tests plans that read modules: a robot follows the attributes that a module publishes, and the plan ends or never
-//! begins if no module publishes them.
+//! Tests plans that read modules: a robot follows the attributes that a module publishes, and without published values
+//! the plan ends or never begins.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -79,7 +79,7 @@ impl Module<Sensed> for Heading {
     }
 }
 
-/// Returns the modules by which a robot follows a sound.
+/// Returns the modules that make a robot follow a sound.
 fn followers() -> Library<Sensed> {
     let mut library = Library::new();
     library.registered("place", |declare| Place(declare.publishes("pose")));
@@ -177,11 +177,11 @@ fn a_robot_follows_what_a_module_publishes() {
     let mut run = Run::of(FOLLOW, &followers());
     let inputs = run.drive();
     assert!(run.distance() < 0.6, "{} m away after {} turns", run.distance(), run.turns);
-    // The ears have the place from break 2 on, publish at break 4, 150 ms after, and the heading goes on at break 5.
+    // The ears read the pose from break 2 on and publish at break 4, 150 ms later; the heading publishes at break 5.
     let first = inputs.iter().position(|input| *input != Twist::default());
     assert_eq!(first, Some(6));
     assert_eq!(run.engine.zero(), Nanos(600_000_000), "the plan's time begins with it");
-    // The threads of modules in the background decide nothing.
+    // The threads of background modules do not affect the result.
     assert_eq!(Run::of(FOLLOW, &followers()).drive(), inputs);
 }
 
@@ -286,7 +286,7 @@ fn a_plan_that_reads_nothing_new_takes_over_at_once() {
     let standing = |modules: &Modules<Sensed>| modules.names().find(|(name, _)| *name == "heading").unwrap().1;
     assert_eq!(standing(run.engine.modules()), ModuleState::Stopped, "nothing reads it");
     run.engine.plans_mut().replace(loaded(FOLLOW).plan(), When::Now);
-    // It is started for the plan that is to follow, which takes over once it has published.
+    // The module is started for the next plan, which takes over once the module has published.
     let taken = (0..10).position(|_| {
         run.turn().unwrap();
         run.engine.plans().number() == 2

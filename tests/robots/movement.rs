@@ -1,5 +1,5 @@
-//! Compares the movements that plans claim with the trail of a run, for the plans of `plans/` and for the plans of the
-//! book that have a file name there.
+//! Compares the movements that plans are meant to make with the trail of a run, for the plans of `plans/` and for the
+//! plans of the book that have a file name there.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -15,7 +15,7 @@ const FLOOR: &str = "[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
 const ROOM: &str = "[[wall]]\npoints = [[0, 0], [8, 0], [8, 6], [0, 6], [0, 0]]\n";
 /// A floor with a wall across the x axis at 3 m.
 const ACROSS: &str = "[[wall]]\npoints = [[3, -4], [3, 4]]\n[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
-/// A floor with a round post on the x axis, with a diameter of 60 cm, whose near side is at 1.7 m.
+/// A floor with a round post on the x axis. Its diameter is 60 cm, and its near side is at 1.7 m.
 const POST: &str =
     "[[disc]]\nname = \"post\"\ncentre = [2, 0]\nradius = 0.3\n\n[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
 
@@ -96,7 +96,7 @@ impl Run {
         self.trail.iter().position(|[t, ..]| *t >= seconds - 1e-9).unwrap_or(self.trail.len() - 1)
     }
 
-    /// Returns the times at which a law began whose text begins with `law`.
+    /// Returns the times at which a law begins whose text starts with `law`.
     fn begins(&self, law: &str) -> Vec<f64> {
         let lines = self.lines.iter().filter(|line| line.contains(&format!(" s  {law}")));
         lines.map(|line| line.split(' ').find(|word| !word.is_empty()).unwrap().parse().unwrap()).collect()
@@ -104,7 +104,7 @@ impl Run {
 }
 
 /// Returns how often the robot reached the far end of a straight line of this length, within 30 cm, and how often it
-/// returned to the start. Asserts that the robot never left the line by more than 30 cm.
+/// returned to the start. Asserts that the robot always stayed within 30 cm of the line.
 fn legs(trail: &[[f64; 3]], length: f64, name: &str) -> (u32, u32) {
     let (mut there, mut back, mut is_out) = (0, 0, false);
     for [ahead, left, _] in trail {
@@ -253,7 +253,7 @@ fn a_wall_on_the_left_is_followed_for_a_minute() {
     for pair in run.trail.windows(2) {
         let ([_, x, y, heading], [t, to_x, to_y, _]) = (pair[0], pair[1]);
         way += libm::hypot(to_x - x, to_y - y);
-        // The nearest wall with the direction in which it is, and its distance.
+        // The walls of the room, each with its direction and its distance from the robot.
         let walls = [(0.0, 8.0 - x), (90.0, 6.0 - y), (180.0, x), (-90.0, y)];
         let (_, near) = walls.into_iter().min_by(|one, other| one.1.total_cmp(&other.1)).unwrap();
         let on_the_left = walls.into_iter().any(|(direction, distance)| {
@@ -326,7 +326,7 @@ fn seven_metres_ahead_are_reached_round_obstacles() {
         let run = run(&ahead, &["--world", world, "--start", start, "--body", body, "--seed", "1"]);
         let trail = run.relative();
         let [ahead, left, _] = trail[trail.len() - 1];
-        // By odometry, which a body like the Scout's has with errors.
+        // The plan measures the distance by odometry, which has errors on a body such as the Scout's.
         let near = if body == "ideal" { 0.15 } else { 0.5 };
         assert!(libm::hypot(ahead - 7.0, left) <= near, "{world}: {ahead} m ahead, {left} m to the left");
         assert!(run.lines.last().unwrap().contains(" s  plan over: completed "), "{world}: {:?}", run.lines);
@@ -370,7 +370,7 @@ fn stuck_ends_a_leg_that_leads_nowhere() {
         let closed = "[[wall]]\npoints = [[-1, -1.2], [1, -1.2], [1, 1.2], [-1, 1.2], [-1, -1.2]]\n";
         fs::write(executable.with_file_name("closed.toml"), closed).unwrap();
         let run = run(&executable, &["--world", "closed.toml"]);
-        // The lines without places, which differ.
+        // The places in the plan's text are left out, because they differ.
         let places =
             |line: &String| line.split(" (").map(|part| part.split_once(')').map_or(part, |(_, rest)| rest)).collect();
         run.lines.iter().map(places).collect::<Vec<String>>()

@@ -24,7 +24,7 @@ fn text(output: &Output) -> String {
     format!("{out}{err}[{}]\n", output.status.code().unwrap())
 }
 
-/// Navigates by the graph of the repository in the simulator, at maximum speed.
+/// Navigates by the repository's graph in the simulator, at maximum speed.
 fn navigate(folder: &Path, words: &[&str]) -> Output {
     let graph = root().join("plans/navigation/office.mdle");
     let usual = ["--target", "sim", "--speed", "max"];
@@ -39,7 +39,7 @@ fn landmarks(output: &Output) -> String {
 }
 
 /// Returns a folder with a graph of four landmarks. Its edges are a plan that ends, a plan that never ends, a plan that
-/// is cut short by its timer, and two plans that only their own conditions can end.
+/// its timer cuts short, and two plans that end only by their own conditions.
 fn small_graph(test: &str) -> PathBuf {
     let folder = folder(test);
     let graph = "Γ_a^b = { AToB (bumper) (Atom (wait 1s) (go 20 0)) }\n\
@@ -83,8 +83,8 @@ fn a_route_of_two_plans_is_driven() {
     "#);
 }
 
-/// Returns a folder for a test with the graph of the repository, and with maps of its landmarks. A Scout has made the
-/// maps once for all tests.
+/// Returns a folder for a test with the repository's graph and with maps of its landmarks, which a Scout makes once for
+/// all tests.
 fn mapped(test: &str) -> PathBuf {
     static MADE: OnceLock<PathBuf> = OnceLock::new();
     let made = MADE.get_or_init(with_maps);
@@ -130,14 +130,14 @@ fn a_robot_turns_at_landmarks_and_names_them() {
     let lines = landmarks(&output);
     let places: Vec<&str> = lines.lines().map(|line| line.split(':').next().unwrap()).collect();
     assert_eq!(places, ["route", "at lab2", "at lab1", "at office"], "{lines}");
-    // It begins at another landmark than it is told.
+    // The robot begins at another landmark than the command names.
     for (start, there) in [("7.45,0.4,180", "lab1"), ("11.5,0,270", "office")] {
         let output = by_maps(&folder, &[&["lab2", "lab1", "--start", start], &off[..]].concat());
         assert_eq!(output.status.code(), Some(3), "{}", text(&output));
         let expected = format!("the robot is at {there} and not at lab2, by its maps");
         assert!(text(&output).contains(&expected), "{}", text(&output));
     }
-    // All six plans in a row, each in the frame of its landmark.
+    // All six plans one after another, each in the frame of its landmark.
     let runs = repeated(2).to_string();
     let circuit = ["lab2", "lab1,office,lab1,lab2,office,lab2", "--goal", "0,0,0.45,0,15"];
     let output = by_maps(
@@ -145,7 +145,7 @@ fn a_robot_turns_at_landmarks_and_names_them() {
         &[&circuit[..], &["--start-noise", "10cm,5deg", "--seed", "9804000", "--runs", &runs]].concat(),
     );
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
-    // Where no map is known, nothing is looked for.
+    // A landmark without a map is not checked.
     let file = fs::read_to_string(folder.join("landmarks.toml")).unwrap();
     fs::write(folder.join("landmarks.toml"), file.replace("map = \"lab1.yaml\"\nat = \"-0.75,0,0\"\n", "")).unwrap();
     let output = by_maps(&folder, &[&["lab1", "office", "--start", "7.45,0.4,180"], &off[..]].concat());
@@ -252,7 +252,7 @@ fn the_record_of_a_way_that_is_cut_short_says_by_what() {
 fn a_robot_that_is_elsewhere_is_refused() {
     let folder = mapped("navigation_elsewhere");
     let seed = ["--seed", "9870500"];
-    // Further off than the search goes: 80 cm along the hallway, 40 degrees, and at no landmark.
+    // Starts outside the range of the search: 80 cm along the hallway, 40 degrees, and at no landmark.
     for start in ["8.25,0.4,180", "7.45,0.4,220", "4,0.6,90"] {
         let output = by_maps(&folder, &["lab1", "office", "--start", start, "--seed", "9870500"]);
         assert_eq!(output.status.code(), Some(3), "{start}: {}", text(&output));
@@ -275,7 +275,7 @@ fn a_robot_that_is_elsewhere_is_refused() {
     let nowhere = locate("4,0.6,90", "nowhere.mcap");
     assert_eq!(nowhere.status.code(), Some(1), "{}", text(&nowhere));
     assert_eq!(text(&nowhere).matches("; not there: ").count(), 3, "{}", text(&nowhere));
-    // One map alone does not tell landmarks apart.
+    // A single map cannot distinguish landmarks.
     let alone = "[[landmark]]\nname = \"lab2\"\naxis = \"0deg\"\nmap = \"lab2.yaml\"\n";
     fs::write(folder.join("landmarks.toml"), alone).unwrap();
     let output = by_maps(&folder, &["lab2", "lab1", "--start", "7.45,0.4,180", "--seed", "9870500"]);
@@ -293,7 +293,7 @@ fn a_graph_that_vanishes_is_not_read_again() {
     let mut running = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut out = BufReader::new(running.stdout.take().unwrap());
     let (mut first, mut rest) = (String::new(), String::new());
-    // The route is printed when all files have been read, two seconds before the second plan begins.
+    // The route is printed after all files have been read, two seconds before the second plan begins.
     out.read_line(&mut first).unwrap();
     fs::remove_file(folder.join("graph.mdle")).unwrap();
     out.read_to_string(&mut rest).unwrap();
@@ -369,7 +369,7 @@ fn a_map_shows_the_walls_at_lab_2() {
 
     "#);
     let map = fs::read(folder.join("lab2.pgm")).unwrap();
-    // The PNG is the image of the map.
+    // The PNG shows the image of the map.
     let png = fs::File::open(folder.join("lab2.png")).unwrap();
     let mut png = png::Decoder::new(std::io::BufReader::new(png)).read_info().unwrap();
     let mut rows = vec![0; png.output_buffer_size().unwrap()];
@@ -381,7 +381,7 @@ fn a_map_shows_the_walls_at_lab_2() {
         let cell = |at: f64| ((at + 1.905) / 0.0254) as usize;
         map[map.len() - 150 * 150 + (149 - cell(y)) * 150 + cell(x)]
     };
-    // The doorway, the hallway in front of it, and the room behind it are free; the wall across is not.
+    // The doorway, the hallway in front of it and the room behind it are free; the wall across is occupied.
     for (x, y) in [(0.0, 0.0), (-0.75, 0.0), (-0.75, 0.3), (0.6, 0.0)] {
         assert!(grey(x, y) > 166, "({x}, {y}) is {}", grey(x, y));
     }

@@ -1,5 +1,4 @@
-//! Tests plans whose laws hang or panic, on trial and not, and the threads on which plans are dropped and modules are
-//! made.
+//! Tests plans whose laws hang or panic, on trial and not, and the threads that drop plans and create modules.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -25,7 +24,7 @@ pub(super) enum Deed {
     None,
     /// Does not return until the test is over.
     Hangs,
-    /// Returns three turns later, according to [`TURN`], at each time in [`SLOW`].
+    /// Returns three turns later, as counted by [`TURN`], at each time in [`SLOW`].
     Slow,
     /// Panics.
     Panics,
@@ -38,7 +37,7 @@ const DEEDS: [(f64, Deed); 4] =
     [(-0.13, Deed::Hangs), (-0.14, Deed::Panics), (-0.15, Deed::Noted), (-0.16, Deed::Slow)];
 /// Times at which a slow law takes long.
 const SLOW: [Nanos; 2] = [Nanos(300_000_000), Nanos(1_000_000_000)];
-/// Number of the current turn, by which slow laws wait.
+/// Number of the current turn, for which slow laws wait.
 pub(super) static TURN: AtomicU64 = AtomicU64::new(u64::MAX);
 /// `true` once laws that hang should return.
 static IS_OVER: AtomicBool = AtomicBool::new(false);
@@ -143,8 +142,8 @@ fn plan(law: &str) -> String {
     format!("{{ Odd (null) (Atom (wait 60s) {law}) (Atom (null) stop) }}")
 }
 
-/// Runs turns until the run ends with a fault, or the first plan continues after the plan `Odd` began to drive. Returns
-/// the number of turns in which `Odd` drove the robot, the messages, and the fault, if any.
+/// Runs turns until the run ends with a fault, or until the first plan continues after the plan `Odd` has begun.
+/// Returns the number of turns in which `Odd` drove the robot, the messages, and the fault, if any.
 fn outcome(run: &mut Run<Odd>) -> (usize, Vec<String>, Option<PilotFault>) {
     let (mut messages, mut driven, mut has_begun) = (Vec::new(), 0, run.engine.plans().number() == 1);
     for _ in 0..200 {
@@ -164,7 +163,7 @@ fn outcome(run: &mut Run<Odd>) -> (usize, Vec<String>, Option<PilotFault>) {
     panic!("no end: {messages:?}");
 }
 
-/// Returns `true` if the first plan drives the robot in one of the next turns; on a busy machine some turns are late.
+/// Returns `true` if the first plan drives the robot in one of the next turns. On a busy machine, some turns are late.
 fn drives_on(run: &mut Run<Odd>) -> bool {
     let drives = (0..50).any(|_| {
         run.turn().unwrap();
@@ -176,11 +175,11 @@ fn drives_on(run: &mut Run<Odd>) -> bool {
 #[test]
 fn a_law_that_panics_stops_the_robot() {
     for time in [Time::Stepped(Pace::Max), Time::Wall] {
-        // At once, as the plan of the run.
+        // `Odd` is the plan of the run and panics at once.
         let mut first = run(&plan("(go -14 0)"), time, &Library::new());
         let (driven, _, fault) = outcome(&mut first);
         assert_eq!((driven, fault), (0, Some(PilotFault::Panicked("index 7 of 3".to_owned()))));
-        // At once, on trial: the plan before goes on.
+        // `Odd` is on trial and panics at once: the previous plan continues.
         let mut second = run(STAND, time, &Library::new());
         second.turn().unwrap();
         second.engine.plans_mut().replace(loaded(&plan("(go -14 0)")).plan(), When::Now);
@@ -194,7 +193,7 @@ fn a_law_that_panics_stops_the_robot() {
 
 #[test]
 fn a_law_that_hangs_stops_the_robot() {
-    // On workers: in stepped time nobody waits for a law to be late.
+    // Only on workers: in stepped time the engine waits for a slow law.
     let mut first = run(&plan("(go -13 0)"), Time::Wall, &Library::new());
     let (driven, messages, fault) = outcome(&mut first);
     assert_eq!((driven, fault), (0, Some(PilotFault::Stopped("the plan has not ended its turn".to_owned()))));
@@ -211,8 +210,7 @@ fn a_law_that_hangs_stops_the_robot() {
     IS_OVER.store(true, Ordering::Relaxed);
 }
 
-/// Runs turns, waits until a plan with [`Deed::Noted`] is dropped, and returns the name of the thread that has dropped
-/// it.
+/// Runs turns until a plan with [`Deed::Noted`] has been dropped, and returns the name of the thread that dropped it.
 fn dropped(run: &mut Run<Odd>) -> String {
     let begun = Instant::now();
     (0..5).for_each(|_| _ = run.turn().unwrap());
@@ -302,7 +300,7 @@ fn a_module_is_made_with_ordinary_scheduling() {
     let made = thread::spawn(move || {
         let mut run = run(STAND, Time::Stepped(Pace::Max), &library);
         run.engine.modules_mut().unload("silent").unwrap();
-        // As the control thread is, where the system permits it.
+        // Gives this thread the scheduling of the control thread, where the system permits it.
         claim_for_worker();
         let number = run.engine.load("silent").unwrap();
         let begun = Instant::now();

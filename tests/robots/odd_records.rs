@@ -17,7 +17,7 @@ const PLAN: &str = "{ Square (wait 5min)
 }
 ";
 
-/// Runs a command line of the shell, in which `mdle` is the program of this workspace. Returns the output, the messages
+/// Runs a command line of the shell in which `mdle` is the program of this workspace. Returns the output, the messages
 /// and the exit status.
 fn shell(folder: &Path, line: &str) -> (String, String, i32) {
     let programs = std::env::var("PATH").unwrap();
@@ -83,7 +83,7 @@ fn long(folder: &Path, turns: u64, to: File) {
         let made = TurnMade { number, t, sent, applied, plan, state, changes: &[], overruled: None };
         frames.turn(made, &y, std::iter::empty(), &mut bytes);
         if file.write_all(&std::mem::take(&mut bytes)).is_err() {
-            // The reader has gone.
+            // The reader has closed the pipe.
             return;
         }
     }
@@ -91,7 +91,7 @@ fn long(folder: &Path, turns: u64, to: File) {
     file.write_all(&bytes).unwrap();
 }
 
-/// Records are read in parts, so that a record that is fifty times as long takes no more memory.
+/// Records are read in parts, so a record that is fifty times as long takes no more memory.
 #[test]
 fn a_long_record_takes_no_more_memory() {
     let folder = recorded("long", "--turns 20");

@@ -16,11 +16,11 @@ use mdle_tests::random_script::script;
 /// Number of random plans.
 const PLANS: u64 = 1_000;
 
-/// Returns the operands of a condition's text: the parts that AND and OR join, at any depth of parentheses.
+/// Returns the operands in a condition's text: the parts that AND and OR join, at any depth of parentheses.
 fn operands(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut operand = String::new();
-    // The depth of parentheses that belong to NOT, RISING or `after`.
+    // Depth of the parentheses that belong to NOT, RISING or `after`.
     let mut held = 0_usize;
     let spaced = text.replace('(', " ( ").replace(')', " ) ");
     for word in spaced.split_whitespace() {
@@ -47,7 +47,7 @@ fn operands(text: &str) -> Vec<String> {
     found
 }
 
-/// Returns the value of an operand in a turn, computed only from its text and these arguments. Returns `None` if its
+/// Returns the value of an operand in a turn, computed from its text and these arguments only. Returns `None` if its
 /// value depends on anything else.
 fn value(operand: &str, reports: &Reports, since: f64) -> Option<bool> {
     let now = reports.t.seconds();
@@ -56,7 +56,7 @@ fn value(operand: &str, reports: &Reports, since: f64) -> Option<bool> {
         return if inside.starts_with('(') { None } else { value(inside, reports, since).map(|fired| !fired) };
     }
     if let Some(inside) = operand.strip_prefix("RISING ") {
-        // What does not fire does not rise.
+        // RISING does not fire if its operand does not fire.
         let fired = if inside.starts_with('(') { None } else { value(inside, reports, since) };
         return fired.filter(|fired| !fired);
     }
@@ -64,10 +64,10 @@ fn value(operand: &str, reports: &Reports, since: f64) -> Option<bool> {
     if stuck.is_some() && !reports.fired.contains(operand) {
         return Some(false);
     }
-    // `stuck` counts from its own scope as well.
+    // `stuck` also needs its time since the entry of its scope.
     if let Some(wait) = stuck.or_else(|| operand.strip_prefix("wait ")) {
         let Some(wait) = seconds(wait) else { return Some(false) };
-        // Its scope was entered by the last transition at the latest, and not before the plan began.
+        // The scope was entered after the plan's beginning and not after the last transition.
         return if wait <= now - since - 1e-6 {
             Some(true)
         } else if wait > now + 1e-6 {
@@ -198,7 +198,7 @@ fn a_batch_names_the_operands() {
 #[test]
 fn a_required_cause_is_read_as_the_compiler_reads_it() {
     let status = |cause: &str| reported("push", &["--start=1.5,5,180", "--speed", "max", "--require", cause]).0;
-    // This start ends in contact.
+    // From this start, the run ends by contact.
     for cause in ["bumper", " bumper ", "Push"] {
         assert_eq!(status(cause), Some(0), "{cause}");
     }

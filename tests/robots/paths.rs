@@ -1,4 +1,4 @@
-//! Tests plans that replay paths, by the executables that `mdlec` builds: where and when they end, which paths they
+//! Tests plans that replay paths, with the executables that `mdlec` builds: where and when they end, which paths they
 //! refuse, and that a recorded path can be replayed.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -15,8 +15,8 @@ use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 
-/// A plan that replays the path twice, with both ways to name its file. The second replay begins where the first has
-/// ended.
+/// A plan that replays the path twice, with both notations for the name of its file. The second replay begins where the
+/// first one ends.
 const TWICE: &str = "{ Twice (bumper) (Atom (null) path(bend)) FRAME 200deg (Atom (null) path \"bend.csv\") }\n";
 /// A plan that replays the path once, and is emitted as rows of tables.
 const ONCE: &str = "{ Once (RISING bumper) (Atom (null) path(bend)) }\n";
@@ -72,7 +72,8 @@ fn good(options: &[&str]) -> String {
 type At = [f64; 3];
 
 /// Returns the pose to which the setpoints of a path lead from the pose `from`, in a frame that is turned by `frame`
-/// degrees, and the time at which they end. The setpoints are parsed and integrated here, in steps of a millisecond.
+/// degrees, and the time at which they end. The test parses and integrates the setpoints itself, in steps of a
+/// millisecond.
 fn integrated(path: &str, from: At, frame: f64) -> (At, f64) {
     let report = path.lines().map(|line| line.split('#').next().unwrap()).filter(|line| !line.trim().is_empty());
     let numbers = |row: &str| row.split(',').map(|number| number.trim().parse().unwrap()).collect::<Vec<f64>>();
@@ -129,7 +130,7 @@ fn a_plan_ends_when_its_path_does_and_where_the_setpoints_lead() {
 #[test]
 fn what_is_recorded_is_a_path_that_leads_to_the_same_place() {
     fs::create_dir_all(twice().join("recorded")).unwrap();
-    // The first half of the plan, with the turn in which it ends.
+    // The first half of the plan, including the turn in which it ends.
     let half = run(&["--turns", "91", "--record-path", "recorded/bend.csv", "--trail", "recorded/trail.csv"]);
     assert_eq!(half.status.code(), Some(4));
     let recorded = fs::read_to_string(twice().join("recorded/bend.csv")).unwrap();
@@ -138,7 +139,7 @@ fn what_is_recorded_is_a_path_that_leads_to_the_same_place() {
     assert_eq!(seconds, 9.0);
     assert_near(end, was_at("recorded/trail.csv", "9"), 0.03, 0.1);
 
-    // Nor does it matter that turns are otherwise, and that the robot hears and drives with errors.
+    // The result does not depend on the period of the turns, nor on sensor and wheel errors.
     let options = ["--paths", "recorded", "--period", "0.07", "--trail", "replayed.csv"];
     let message = good(&options);
     assert!(message.starts_with("9.03 s  path \"bend.csv\""), "the first turn from 9 s on: {message}");

@@ -1,4 +1,4 @@
-//! Tests local pursuit by three robots (paper, section IV-D, Fig. 12): with random seeds, the paths become straight
+//! Tests local pursuit by three robots (paper, section IV-D, Fig. 12), with random seeds: the paths become straighter
 //! from trip to trip.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "a test tells")]
@@ -36,7 +36,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
 
 /// Trips of a robot by `path` and `Follow`, in order, according to the log of a run.
 struct Trips {
-    /// For each trip, `true` if the robot led it, and the robot's places.
+    /// For each trip, `true` if the robot led it, and the robot's positions.
     trips: Vec<(bool, Vec<Place>)>,
 }
 
@@ -59,15 +59,15 @@ impl Trips {
         Self { trips }
     }
 
-    /// Returns the places of the trips that the robot led.
+    /// Returns the positions on the trips that the robot led.
     fn led(&self) -> impl Iterator<Item = &Vec<Place>> {
         self.trips.iter().filter(|(is_led, _)| *is_led).map(|(_, way)| way)
     }
 }
 
-/// Figures of a run: the time of its end in seconds, the minimum gap in centimetres and, for each trip, the excess
-/// length of the leader's and of the second robot's path in percent, and the maximum distance of the leader from the
-/// line between the ends in metres.
+/// Measures of a run: the time of its end in seconds, the minimum gap in centimetres and, for each trip, the excess
+/// length of the leader's path and of the second robot's path in percent, and the maximum distance of the leader from
+/// the line between the ends in metres.
 struct Figures {
     seconds: f64,
     gap: f64,
@@ -76,7 +76,7 @@ struct Figures {
     bulges: Vec<f64>,
 }
 
-/// Runs the scenario with this seed, checks conditions that hold for every run, and returns the figures.
+/// Runs the scenario with this seed, asserts conditions that hold for every run, and returns the measures of the run.
 fn figures(folder: &Path, seed: u64) -> Figures {
     let log = format!("{seed}.jsonl");
     let output = run(folder, &["--seed", &seed.to_string(), "--log", &log]);
@@ -99,7 +99,7 @@ fn figures(folder: &Path, seed: u64) -> Figures {
     }
 }
 
-/// Asserts what the book promises about each run, and prints the figures of all runs.
+/// Asserts the book's statements about each run, and prints the measures of all runs.
 fn assert_converge(test: &str, more: &str, first: u64) {
     let folder = scenario(test, more);
     let seeds = first..first + repeated(5);
@@ -182,7 +182,7 @@ fn a_robot_that_dies_in_any_atom_leaves_nobody_waiting() {
     let atoms: Vec<(&str, f64)> =
         robots.iter().flat_map(|robot| begins(&whole, robot).into_iter().map(move |t| (*robot, t))).collect();
     assert_eq!(atoms.len(), 24, "eight atoms of each plan: {whole}");
-    // Every sixth, another one in each run of a few; all in a long one.
+    // A short test kills a robot in every sixth atom, and a long test in every atom.
     let step = 24 / sized(4, 24) as usize;
     for (victim, begun) in atoms.into_iter().step_by(step) {
         let named = format!("name = \"{victim}\"\n");
@@ -198,7 +198,8 @@ fn a_robot_that_dies_in_any_atom_leaves_nobody_waiting() {
 #[test]
 fn a_robot_that_dies_is_not_run_into() {
     let bad = "\n[link]\nlatency = \"0ms..200ms\"\nloss = 0.1\n";
-    // In these runs two robots met, in the last one two living ones, if none ended `go` when others were silent.
+    // Runs in which two robots would collide if `go` did not end when other robots fall silent; in the last run, both
+    // of them are still running.
     let runs =
         [("robot2", "0.8s", "", "9940350"), ("robot1", "35.1s", "", "9940313"), ("robot3", "52.4s", bad, "9940398")];
     for (victim, time, link, seed) in runs {
@@ -226,7 +227,7 @@ fn a_robot_that_dies_leaves_nobody_waiting() {
         fs::write(&file, text.replace(&named, &format!("{named}killed = \"{time}s\"\n"))).unwrap();
         let output = run(&folder, &["--seed", &number.to_string()]);
         let report = String::from_utf8(output.stdout).unwrap();
-        // The status says that a plan is not over: that of the robot that died.
+        // The exit status reports a plan that is not over: that of the killed robot.
         assert_eq!(output.status.code(), Some(4), "{report}");
         let over: Vec<_> = report.lines().filter(|line| line.contains(": plan over: ")).collect();
         assert_eq!(over.len(), 2, "{victim} at {time} s: {report}");

@@ -45,7 +45,7 @@ fn a_record_tells_what_it_contains() {
     assert!(out.contains("; the record has no end\n") && status == 0, "{out}");
 }
 
-/// A part of a record is a record too: it replays, and its turns have the same explanations.
+/// A part of a record is itself a record: it replays, and its turns have the same explanations.
 #[test]
 fn a_part_of_a_record_is_a_record() {
     let folder = recorded("cut");
@@ -84,7 +84,7 @@ fn messages_for_viewers_are_complete() {
     for (messages, required) in [(&poses, &schemas[0]), (&scans, &schemas[1])] {
         assert!(messages.iter().all(|message| required.iter().all(|key| message.get(key).is_some())), "{messages:?}");
     }
-    // A scan is drawn where the robot was.
+    // The pose of a scan is that of the robot at the same time.
     assert!(
         poses.iter().zip(&scans).all(|(pose, scan)| pose["pose"] == scan["pose"] && scan["frame_id"] == "odometry")
     );
@@ -127,7 +127,7 @@ fn a_reader_that_has_gone_is_no_error() {
 fn a_damaged_record_is_not_cut() {
     let folder = recorded("damaged");
     let mut record = fs::read(folder.join("square.mcap")).unwrap();
-    // The pose of turn 100, after its number, its time, and the time of its output.
+    // Start of turn 100: its number, its time, and the time of its output; its pose follows.
     let start = [100, 10_000_000_000, 10_000_000_000].map(u64::to_le_bytes).concat();
     let turn = record.windows(start.len()).position(|bytes| bytes == start).unwrap();
     record[turn + start.len()] ^= 1;
@@ -210,7 +210,7 @@ fn a_record_is_drawn() {
         assert!(picture.contains("go 20 0") && picture.contains("turn 90"), "{picture}");
     }
     assert!(path.contains("class=\"way0\"") && path.contains("class=\"echo\""), "{path}");
-    // Four stays in each of the two atoms.
+    // Each of the two atoms is entered four times.
     let stays = ["class=\"disc0\"", "class=\"disc1\""].map(|class| time.matches(class).count());
     assert_eq!(stays, [4, 4]);
     assert!(["r0 [m]", "v [cm/s]", "omega [rad/s]", "0 s", "30 s"].iter().all(|words| time.contains(words)), "{time}");

@@ -1,4 +1,4 @@
-//! Tests records of runs. Each record replays to the bit, on the simulator and on both emulated robots. A record that
+//! Tests records of runs, in the simulator and on both emulated robots. Each record replays to the bit. A record that
 //! was changed or cut short, or whose run was killed, is reported as such.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -48,7 +48,7 @@ fn assert_same(folder: &Path, arguments: &[&str]) -> u64 {
     let (out, err, status) = replay(folder, arguments);
     assert_eq!((err.as_str(), status), ("", Some(0)), "{arguments:?}: {out}");
     let count = out.strip_prefix("the same to the bit, ").and_then(|rest| rest.strip_suffix('\n'));
-    // A plan that ends in its first turn is a record of "1 turn".
+    // The count may be singular: a plan that ends in its first turn has a record of "1 turn".
     let turns = count.and_then(|count| count.strip_suffix(" turns").or(count.strip_suffix(" turn")));
     turns.expect(&out).parse().unwrap()
 }
@@ -137,7 +137,7 @@ fn the_record_of_an_executable_needs_the_text_of_its_plan() {
     assert_eq!((err.as_str(), status), (expected, Some(2)));
 }
 
-/// With another plan, the replay of a record differs from the run, and the first turn that differs is named.
+/// If a record is replayed with another plan, the first turn that differs is named.
 #[test]
 fn another_plan_differs_in_a_turn() {
     let folder = folder("other");
@@ -153,7 +153,7 @@ fn another_plan_differs_in_a_turn() {
     ];
     let (differs, rest) = out.split_once("\nfrom here on").unwrap();
     assert_eq!(differs, expected.join("\n"));
-    // A second later than the other plan the recorded one does the same.
+    // The recorded plan does the same as the other plan, a second later.
     let rows: Vec<_> = rest.lines().skip(2).take(3).map(str::trim_end).collect();
     let expected = ["           recorded  edited.mdle", "    3.0 s            go 0 0.7", "    4.0 s  go 0 0.7"];
     assert_eq!(rows, expected);
@@ -178,7 +178,7 @@ fn a_plan_that_uses_others_replays_without_their_files() {
     let main = "use \"parts/leg.mdle\"\nuse \"parts/both.mdle\"\n{ Main (bumper) Leg(2s) Rest }\n";
     fs::write(folder.join("main.mdle"), main).unwrap();
     fs::write(folder.join("parts/leg.mdle"), "{ Leg(long: time) (Atom (wait long) (go 20 0)) }\n").unwrap();
-    // The file with another name than above.
+    // Uses the same file by another path.
     fs::write(folder.join("parts/both.mdle"), "use \"../parts/./leg.mdle\"\n{ Rest Leg(1s) }\n").unwrap();
     let options = ["run", "main.mdle", "--target", "sim", "--speed", "max", "--log", "run.mcap"];
     assert!(run(&folder, &options).status.success());
@@ -193,7 +193,7 @@ fn range_of(record: &[u8], turn: u64) -> Option<usize> {
     let t = turn * 100_000_000;
     let start = [turn, t, t].map(u64::to_le_bytes).concat();
     let at = record.windows(start.len()).position(|bytes| bytes == start)? + start.len();
-    // Pose, velocity, switches, battery, its flags, kind of the compass.
+    // The pose, the velocity, the switches, the battery, its flags and the kind of the compass come first.
     let fresh = at + 24 + 16 + 4 + 8 + 1 + 1;
     let has_range = record[fresh..fresh + 4] != [0; 4] && record[fresh + 4] & 2 != 0;
     has_range.then_some(fresh + 5)
@@ -280,7 +280,7 @@ fn parts(record: &[u8]) -> Vec<(u8, std::ops::Range<usize>)> {
     parts
 }
 
-/// The reader notices a changed bit anywhere in a record, by the checksum of a turn, of a chunk or of the file.
+/// A changed bit anywhere in a record is detected, by the checksum of a turn, of a chunk or of the file.
 #[test]
 fn a_changed_bit_is_noticed_in_every_part() {
     let folder = folder("bits");
@@ -361,7 +361,7 @@ fn a_log_of_best_effort_ends_without_the_run() {
     }
 }
 
-/// The time that the warning names is not before that of any turn in the log.
+/// The log contains no turn after the time that the warning names.
 #[test]
 fn a_log_of_best_effort_ends_before_the_time_that_is_named() {
     let folder = folder("effort_time");
@@ -387,7 +387,7 @@ fn a_log_of_best_effort_ends_before_the_time_that_is_named() {
     }
 }
 
-/// As in a run in real time, each second is written to the file at once.
+/// As in any run in real time, each second is written to the file at once.
 #[test]
 fn the_record_of_a_killed_run_can_be_read() {
     let folder = folder("killed");

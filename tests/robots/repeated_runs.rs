@@ -1,5 +1,5 @@
-//! Tests that `mdle log info` prints the command that repeats the run of a record. The command contains everything that
-//! determines the run.
+//! Tests that `mdle log info` prints a command that repeats the run of a record and contains everything that determines
+//! the run.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -44,7 +44,7 @@ fn shell(folder: &Path, line: &str) -> Output {
     Command::new("sh").args(["-c", &line]).current_dir(folder).output().unwrap()
 }
 
-/// Asserts that the command in a record makes an identical record.
+/// Asserts that the command in a record produces an identical record.
 fn assert_repeated(folder: &Path, record: &str, again: &str) {
     let info = Command::new(mdle()).args(["log", "info", record]).current_dir(folder).output().unwrap();
     let info = String::from_utf8(info.stdout).unwrap();

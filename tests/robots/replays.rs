@@ -1,4 +1,4 @@
-//! Tests that runs of every kind can be repeated from their records to the bit: with random errors, modules, child
+//! Tests that runs of every kind can be repeated to the bit from their records: with random errors, modules, child
 //! processes, safety rules, and operators who replace plans, in the simulator and on both emulated robots.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -25,7 +25,7 @@ const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
 /// Number of kinds of runs.
 const KINDS: u64 = 10;
-/// Number of runs if the variable `MDLE_LONG` is 1. Without the variable, half of them are made.
+/// Number of runs if the variable `MDLE_LONG` is 1; without the variable, half as many.
 const RUNS: u64 = 50;
 
 /// Files of all runs. `Rounds` has a loop, a memory, a rising condition and a frame; `Sound` and `Ears` read modules;
@@ -133,7 +133,7 @@ fn arguments(number: u64) -> String {
     format!("{arguments} --log run.mcap")
 }
 
-/// Runs `mdle` with these arguments, which are separated by spaces; a no-break space stands for a space inside an
+/// Runs `mdle` with these arguments, which are separated by spaces; a no-break space represents a space inside an
 /// argument. Returns the output and the exit status.
 fn run(folder: &Path, arguments: &str) -> (String, i32) {
     let words = arguments.split(' ').map(|word| word.replace('\u{a0}', " "));
@@ -181,7 +181,7 @@ fn recorded(number: u64) -> (PathBuf, String) {
     (folder, text)
 }
 
-/// Writes the record `run.mcap` without the changes of its turns to `bare.mcap`.
+/// Copies the record `run.mcap` to `bare.mcap` without the changes in its turns.
 fn without_changes(folder: &Path) {
     let (begin, turns) = Records::open(fs::File::open(folder.join("run.mcap")).unwrap()).unwrap();
     let (mut frames, mut bytes) = (Frames::default(), Vec::new());
@@ -195,7 +195,7 @@ fn without_changes(folder: &Path) {
     RecordFile::new(fs::File::create(folder.join("bare.mcap")).unwrap()).write_all(&bytes).unwrap();
 }
 
-/// A run depends on modules and operators. Without their changes, the record does not replay.
+/// A run depends on modules and operators: without their changes, the record does not replay.
 #[test]
 fn a_replay_needs_the_changes_of_a_record() {
     for number in [62, 63, 66, 67] {
@@ -207,7 +207,8 @@ fn a_replay_needs_the_changes_of_a_record() {
     }
 }
 
-/// A record contains only the values that the run has read. In a replay, a plan that reads another value waits for it.
+/// A record contains only the values that the run has read. If another plan reads other values in a replay, it waits
+/// for them.
 #[test]
 fn another_plan_reads_what_the_run_has_read() {
     let (folder, _) = recorded(72);
@@ -221,7 +222,7 @@ fn another_plan_reads_what_the_run_has_read() {
     assert!(unknown.contains("input by\n  recorded: the law of the atom\n  replayed: the null input\n"), "{unknown}");
 }
 
-/// Returns the number of occurrences of a text in a record.
+/// Returns how often a text occurs in a record.
 fn count(record: &[u8], text: &str) -> usize {
     record.windows(text.len()).filter(|bytes| *bytes == text.as_bytes()).count()
 }
@@ -239,7 +240,7 @@ fn runs_of_every_kind_replay_to_the_bit() {
     let mut counts = [0; WORDS.len()];
     for number in 0..repeated(RUNS) {
         let (folder, report) = recorded(number);
-        // The record needs no other file.
+        // The replay needs no file other than the record.
         for (name, _) in FILES {
             fs::remove_file(folder.join(name)).unwrap();
         }

@@ -71,7 +71,7 @@ fn run(plan: &str, rules: &Rules, make: &Make, turns: u64) -> Vec<Turned> {
     made
 }
 
-/// Returns a line for each time at which another rule, or no rule, began to overrule the plan, and a line about the
+/// Returns a line for each time at which a different rule, or no rule, began to overrule the plan, and a line about the
 /// last turn.
 fn story(run: &[Turned]) -> String {
     let mut story = String::new();
@@ -275,7 +275,7 @@ fn random_plan(chance: &mut Chance) -> String {
     plan + "}\n"
 }
 
-/// Returns the text of a safety file with a guard.
+/// Returns the text of a safety file with a guard whose condition is `when`.
 fn file_with(when: &str) -> String {
     format!("# safety\n\n[guards.near]\nwhen = \"{when}\"\nthen = \"hold\"\n")
 }

@@ -1,5 +1,5 @@
-//! Tests records of scenarios: each robot has a record of its own, and all commands read it like the record of a run of
-//! a single robot.
+//! Tests records of scenarios: each robot has its own record, which all commands read like that of a run with a single
+//! robot.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -78,7 +78,7 @@ fn each_robot_has_a_record() {
     let (report, err, status) = run(&folder, "run two.toml --log run.mcap");
     assert_eq!((err.as_str(), status), ("", 4), "{report}");
     assert_eq!(run(&folder, "run two.toml").0, report, "a record changes nothing");
-    // The records need neither the scenario nor the plans.
+    // The records can be read without the scenario and the plans.
     for file in ["two.toml", "meet.mdle", "ahead.mdle"] {
         fs::rename(folder.join(file), folder.join(format!("{file}.old"))).unwrap();
     }
@@ -96,7 +96,7 @@ fn each_robot_has_a_record() {
         format!("{}\n\n{why}", info.join("\n"))
     });
     insta::assert_snapshot!(answers.join("----\n"));
-    // As in the report.
+    // The record must have the same times as the report.
     let began = |line: &str| line.split_once(" s  ada: ").map(|(time, _)| time.trim().to_owned());
     let times: Vec<String> = report.lines().filter_map(began).collect();
     let bytes = fs::read(folder.join("run.ada.mcap")).unwrap();
@@ -106,7 +106,7 @@ fn each_robot_has_a_record() {
     assert_eq!(recorded, times);
 }
 
-/// Writes a record without the states that the link received.
+/// Copies a record without the states that the link received.
 fn without_peers(folder: &Path, from: &str, to: &str) {
     let (begin, turns) = Records::open(fs::File::open(folder.join(from)).unwrap()).unwrap();
     let (mut frames, mut bytes) = (Frames::default(), Vec::new());
@@ -121,8 +121,8 @@ fn without_peers(folder: &Path, from: &str, to: &str) {
     std::io::Write::write_all(&mut RecordFile::new(fs::File::create(folder.join(to)).unwrap()), &bytes).unwrap();
 }
 
-/// The states that a robot received from the other robot are part of its record. Without them, or with a changed bit in
-/// them, the replay names the turn.
+/// The states that a robot received from the other robot are part of its record. Without these states, or with a
+/// changed bit in them, the replay names the turn.
 #[test]
 fn knowledge_of_other_robots_is_recorded() {
     let folder = prepared("peers");
@@ -134,7 +134,7 @@ fn knowledge_of_other_robots_is_recorded() {
     for turn in [5_u64, 30, 60] {
         let start = [turn, turn * 100_000_000].map(u64::to_le_bytes).concat();
         let begin = record.windows(start.len()).position(|bytes| bytes == start).unwrap();
-        // A change of the kind 12, and the name with its length.
+        // A change of kind 12, followed by the length of the name and the name.
         let peer = [&[12, 3, 0, 0, 0][..], b"bob"].concat();
         let at = begin + record[begin..].windows(peer.len()).position(|bytes| bytes == peer).unwrap() + peer.len();
         let mut changed = record.clone();
@@ -148,7 +148,7 @@ fn knowledge_of_other_robots_is_recorded() {
     }
 }
 
-/// The three robots of the book learn a path. Each path that a robot records is in the robot's record.
+/// The three robots of the book learn a path. Each path that a robot stores is in the robot's record.
 #[test]
 fn recorded_ways_are_recorded() {
     let folder = folder("scenario-record-ways");
@@ -191,7 +191,7 @@ fn records_of_a_killed_scenario_can_be_read() {
     }
 }
 
-/// A full disk ends the scenario with a message that names the file. A log of another format is refused with the names
+/// A full disk ends the scenario with a message that names the file. A log in another format is refused with the names
 /// to type.
 #[test]
 fn records_that_cannot_be_written_end_a_scenario() {
@@ -235,7 +235,7 @@ fn a_refused_scenario_leaves_no_records() {
     assert!(!folder.join("log.ada.mcap").exists());
 }
 
-/// In the report, an error message and its help are separate lines; the record ends with the message alone.
+/// In the report, a fault's message and its help are on separate lines; the record ends with the message alone.
 #[test]
 fn a_fault_with_help_has_two_lines() {
     let folder = prepared("two-lines");

@@ -1,4 +1,5 @@
-//! Tests that refused or replaced plans of other robots do not use up the names that a process stores for loaded plans.
+//! Tests that plans of other robots, if they are refused or replaced, do not use up the names that a process can store
+//! for loaded plans.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -43,7 +44,7 @@ fn a_refused_plan_leaves_no_names() {
         18
     );
     assert!(text.contains("refused: the plan names the robot `r18_"), "{}", text.len());
-    // A new name of a module can still be loaded.
+    // A module with a new name can still be loaded.
     assert!(text.contains("/usr/new_one/range"), "{}", &text[text.len() - 1000..]);
 }
 

@@ -1,5 +1,5 @@
-//! Tests two Scouts in one world, each with a separate executable. They detect and touch each other, in lockstep, with
-//! the same result in every run.
+//! Tests two Scouts in one world, each with its own executable, in lockstep. They detect and touch each other, with the
+//! same result in every run.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::cell::RefCell;
@@ -15,7 +15,7 @@ use mdle_sim::{Body, Footprint, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// A room in which nothing is nearer to two robots that are 3 m apart than the other robot.
+/// A room in which, for two robots that are 3 m apart, nothing is nearer than the other robot.
 const ROOM: &str =
     "start = { x = -1.5, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-4, 3], [-4, -3], [4, -3]]";
 const APPROACH: &str = "{ Approach (bumper OR wait 30s) (Atom (r0 < 60cm) (go 20 0)) }\n";
@@ -40,8 +40,7 @@ fn seat(is_left: bool) -> Seat<Scout> {
     Seat { robot: Scout::new(body).unwrap(), port: Port::open().unwrap() }
 }
 
-/// Runs two executables, each on a robot of its own. Returns their outputs, and the footprints of the robots at the
-/// end.
+/// Runs two executables, each on its own robot. Returns their outputs and the final footprints of the robots.
 fn together(executables: [&Path; 2]) -> ([String; 2], [Footprint; 2]) {
     let mut robots = Several::of(vec![seat(true), seat(false)]).unwrap();
     let mut started = executables.iter().zip(robots.seats()).map(|(executable, seat)| {
@@ -79,7 +78,7 @@ fn a_robot_stops_before_another_one_whose_driver_has_gone() {
         message[0]
     );
     assert!(message[1].contains("plan over: wait 3") && message[1].ends_with("[0]"), "{}", message[1]);
-    // Behind the last ping it has gone on for a round of its sonars at most.
+    // After the ping that ended the plan, the robot has driven on for at most one round of its sonars.
     assert!((0.35..0.6).contains(&gap(footprints)), "{}", gap(footprints));
     assert_eq!(together([&approach, &stay]), (message, footprints));
 }

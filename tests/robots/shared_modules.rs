@@ -1,5 +1,5 @@
-//! Tests that robots of a scenario send each other attributes of modules, and plans, over the link, in addition to
-//! their states.
+//! Tests that robots of a scenario send each other attributes of modules, and plans, over the link in addition to their
+//! states.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -50,10 +50,10 @@ fn a_plan_reads_a_module_of_another_robot() {
         status == 4 && out.contains("ada: go 1 0 (ada.mdle:3)  <- range(bob_heading module) = 2 m > 1m"),
         "{out}{err}"
     );
-    // The last state of bob is that of the turn at 3.9 s.
+    // The last state that bob sends is that of the turn at 3.9 s.
     assert!(out.contains("4.6 s  ada: plan over: age(bob_sensors module) = 0.6 s > 500ms"), "{out}{err}");
     assert_replayed(&folder, "ada");
-    // Losses make values older, and do not lose them for ever.
+    // Lost messages make values older, but newer values still arrive.
     let losses = "\n[link]\nlatency = \"0ms..200ms\"\nloss = 0.3\n";
     scenario(&folder, [("", ada), (bob, "{ B (wait 20s) (Atom (null) stop) }")], losses);
     let (out, err, _) = run(&folder, "run two.toml --log lossy.mcap");
@@ -75,11 +75,11 @@ fn a_robot_shares_only_modules_that_it_has() {
     assert!(status == 3 && out.contains("/usr/bob_heading/age, which no module has published within 2 s"), "{out}");
 }
 
-/// Entry of `bob`, which accepts plans from `ada`; `STANDS` is a plan for either robot that ends after 8 s.
+/// Entry with which `bob` accepts plans from `ada`. `STANDS` is a plan for either robot that ends after 8 s.
 const TAKES: &str = "plans-from = [\"ada\"]";
 const STANDS: &str = "{ S (wait 8s)\n(Atom (wait 5s) stop)\n(Atom (null) stop) }";
 
-/// Returns the entry of a plan that `ada` sends to `bob` at this time.
+/// Returns the scenario's entry for a plan that `ada` sends to `bob` at the time `at`.
 fn sent(at: &str, file: &str, when: &str) -> String {
     format!("[[sent-plan]]\nat = \"{at}\"\nfrom = \"ada\"\nto = \"bob\"\nfile = \"{file}\"\nwhen = \"{when}\"\n")
 }
@@ -90,7 +90,7 @@ fn a_plan_of_another_robot_takes_over() {
     fs::write(folder.join("go.mdle"), "{ Go (wait 2s)\n(Atom (null) (go 10 0)) }").unwrap();
     for (when, begins, over) in [("now", "2.2", "4.2"), ("atom", "5.0", "7.0"), ("plan", "8.0", "10.0")] {
         let late = "\n[link]\nlatency = \"100ms\"\n";
-        // The sender is there when the plan begins.
+        // The sender must still run when the plan begins.
         let ada = STANDS.replace("8s", "9s");
         scenario(&folder, [("", &ada), (TAKES, STANDS)], &(sent("2s", "go.mdle", when) + late));
         let (out, err, status) = run(&folder, "run two.toml --log run.mcap");
@@ -116,7 +116,7 @@ fn a_plan_of_another_robot_takes_over() {
 fn a_plan_that_does_not_check_changes_nothing() {
     let folder = folder("sent_faulty");
     fs::write(folder.join("secret.mdle"), "{ Secret (wait 1s) (Atom (null) stop) }").unwrap();
-    // Texts of a kilobyte that would take gigabytes.
+    // Texts of a kilobyte that would take gigabytes of memory.
     let doubling = (1..=13).map(|n| format!("{{ P{n} (wait {n}) P{} P{} }}\n", n - 1, n - 1));
     let doubled = doubling.collect::<String>() + "{ P0 (wait 9) (Atom (wait 1) stop) }";
     let copied = |times: usize, condition: &str, count: usize| {

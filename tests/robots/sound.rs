@@ -1,4 +1,4 @@
-//! Tests plans that follow sounds that a robot hears, by the microphones of the simulated robot, a WAV file, and the
+//! Tests plans that follow sounds, heard by the microphones of the simulated robot, from a WAV file, and through the
 //! pipe of a recorder (docs/src/sound.md).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -11,11 +11,11 @@ use mdle_tests::chance::sized;
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
 
-/// Place of the sound source in the plan's world, in metres. `ARRIVED` is the distance at which a robot has arrived, in
-/// metres.
+/// Position of the sound source in the plan's world, in metres. `ARRIVED` is the distance at which a robot has arrived,
+/// in metres.
 const SOURCE: (f64, f64) = (5.5, 4.2);
 const ARRIVED: f64 = 0.8;
-/// First random seed of these tests. No parameter was chosen with these seeds.
+/// First random seed of these tests. No parameter was tuned with these seeds.
 const FIRST: u64 = 9_820_000;
 
 /// Copies the plan and its world into a folder.
@@ -45,7 +45,7 @@ fn write_wav(path: &Path, sample_rate: u32, channels: u16, value: i16) {
     writer.finalize().unwrap();
 }
 
-/// Returns the minimum distance from the sound source in a trail.
+/// Returns the minimum distance between the positions in a trail and the sound source.
 fn nearest(trail: &str) -> f64 {
     let distances = trail.lines().skip(1).map(|line| {
         let numbers: Vec<f64> = line.split(',').filter_map(|text| text.parse().ok()).collect();
@@ -108,7 +108,7 @@ fn robots_of_a_scenario_hear_by_their_own_ears() {
         let of_robot =
             trail.lines().filter_map(|line| line.split_once(&format!(",{name},")).map(|(t, at)| format!("{t},{at}\n")));
         let distance = nearest(&("t,x,y,heading\n".to_owned() + &of_robot.collect::<String>()));
-        // The one that comes second stands off the other.
+        // The second robot to arrive keeps its distance from the first one.
         assert!(distance < ARRIVED + 0.5, "{name}: {distance}");
     }
 }
@@ -162,7 +162,7 @@ fn a_plan_goes_on_after_its_sound() {
     let mut noise: u32 = 1;
     for _ in 0..4 * 44_100 {
         noise = noise.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        // The same at both ears: straight ahead.
+        // Equal samples for both ears: the sound is straight ahead.
         (0..2).for_each(|_| writer.write_sample((noise >> 18) as i16).unwrap());
     }
     writer.finalize().unwrap();

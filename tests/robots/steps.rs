@@ -80,7 +80,7 @@ fn wrong_commands_of_steps_are_refused() {
     assert!(file.contains("\nturn 1 at 0.1 s"), "{file}");
 }
 
-/// Each step is compared with the record: another plan differs in a turn, and the exit status is then 1.
+/// Each step is compared with the record: if another plan differs in a turn, the exit status is 1.
 #[test]
 fn a_step_says_what_differs() {
     let folder = recorded("differs");

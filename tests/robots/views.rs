@@ -1,5 +1,5 @@
-//! Tests `--watch`, `--plot`, `--record` and `--trail` on emulated robots. The driver does not know their world, so
-//! that the views are made from the poses and ranges that the robot reports.
+//! Tests `--watch`, `--plot`, `--record` and `--trail` on emulated robots. The driver does not know their world, so the
+//! views are made from the poses and ranges that the robot reports.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
@@ -38,7 +38,7 @@ fn run<R: Emulated + Send>(folder: &Path, robot: R, target: &str, options: &[&st
     called(Command::new(mdle()), folder, robot, target, options, out)
 }
 
-/// Runs the plan like [`run`], by a command that takes the arguments of `mdle`.
+/// Runs the plan like [`run`], with a command that takes the arguments of `mdle`.
 fn called<R: Emulated + Send>(
     mut command: Command,
     folder: &Path,
@@ -67,7 +67,7 @@ fn check_files(folder: &Path, target: &str, output: &Output) {
         ["plot.svg", "record.svg", "trail.csv"].map(|file| fs::read_to_string(folder.join(file)).unwrap());
     assert!(plot.contains(&format!("robot {target}, by odometry")), "{plot}");
     assert!(["way0", "way2"].iter().all(|way| plot.contains(&format!("class=\"{way}\""))), "{plot}");
-    // The room is drawn by its echoes: its walls are on no side unheard.
+    // The plot shows the echoes of the room, whose walls are heard on all sides.
     let echoes = plot.split_once("class=\"echo\"").and_then(|(_, after)| after.split('>').next()).unwrap();
     assert!(echoes.matches("h0").count() > 20, "{target}: {echoes}");
     assert!(record.contains("<animate") && record.contains("go 20 0"), "{record}");
@@ -103,7 +103,7 @@ fn robots_are_watched_at_a_terminal() {
     let mut keys = File::from(keys);
     let reading = thread::spawn(move || {
         let (mut shown, mut bytes) = (Vec::new(), [0; 4096]);
-        // The last one to close the terminal ends it.
+        // The reading ends when all processes have closed the terminal.
         while let Ok(count @ 1..) = keys.read(&mut bytes) {
             shown.extend_from_slice(&bytes[..count]);
         }
@@ -115,7 +115,8 @@ fn robots_are_watched_at_a_terminal() {
     let shown = reading.join().unwrap();
     let (pictures, behind) = shown.rsplit_once("\x1b[?1049l").unwrap();
     assert!(pictures.starts_with("\x1b[?1049h") && pictures.contains("Ctrl-C stops the robot"), "{pictures}");
-    // The running atom with its place, and walls of echoes: in the first picture, others come with the clock.
+    // The first picture shows the running atom with its place, and walls made of echoes; how many pictures follow
+    // depends on the clock.
     assert!(pictures.contains("go 20 0  (corner.mdle:2"), "{pictures}");
     assert!(pictures.chars().filter(|letter| ('\u{2801}'..='\u{28FF}').contains(letter)).count() > 8, "{pictures}");
     assert!(behind.contains("plan over: wait 3s (corner.mdle:2)"), "{behind}");

@@ -1,4 +1,4 @@
-//! A robot as a third party would write it. Its battery loses a volt in each turn.
+//! A robot in the form in which a third party would write it. Its battery loses a volt in each turn.
 #![forbid(unsafe_code)]
 
 pub mod alphabet;

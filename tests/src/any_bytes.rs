@@ -1,8 +1,8 @@
-//! Properties of any bytes on a robot's line, at either end. libFuzzer searches for bytes that violate them, and a test
-//! checks all bytes of the corpus.
+//! Properties of any bytes on the line between a robot and its driver, at either end. libFuzzer searches for bytes that
+//! violate them, and a test checks the corpus.
 //!
-//! Each function panics if a property does not hold. The first byte determines the length of the pieces in which all
-//! other bytes arrive.
+//! Each function panics if a property does not hold. The first byte determines the length of the pieces in which the
+//! remaining bytes arrive.
 
 use mdle_atrv::{Packet, Reader, Report};
 use mdle_atrv_emulator::wire as rflex;
@@ -12,21 +12,22 @@ use mdle_scout_emulator::wire;
 /// Maximum number of bytes that a reader keeps of an incomplete message.
 const KEPT: usize = 1100;
 
-/// Splits all bytes after the first one into pieces. Their length is 1 plus the first byte modulo 100.
+/// Splits the bytes after the first one into pieces. The length of a piece is 1 plus the first byte modulo 100.
 fn in_pieces(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let (size, stream) =
         bytes.split_first().map_or((1, bytes), |(size, stream)| (1 + usize::from(*size) % 100, stream));
     stream.chunks(size)
 }
 
-/// Asserts the properties on a Scout's line.
+/// Asserts the properties of the Scout's line.
 pub fn scout(bytes: &[u8]) {
     answers(bytes);
     let whole: Vec<u8> = in_pieces(bytes).flatten().copied().collect();
     let mut robot = wire::Incoming::default();
     let found = requests(&mut robot, in_pieces(bytes));
     assert_eq!(found, requests(&mut wire::Incoming::default(), [whole.as_slice()].into_iter()));
-    // It may be in the middle of what is none, but not for longer than that is.
+    // The emulator may still wait for the end of an incomplete request, but for at most the maximum length of a
+    // request.
     let state = Frame { kind: 7, arguments: [].into_iter().collect() }.bytes();
     let behind = requests(&mut robot, std::iter::repeat_n(state.as_slice(), 64));
     assert!(behind.iter().any(|request| request.command == 7 && request.data.is_empty()), "{behind:?}");
@@ -60,8 +61,8 @@ fn answers(bytes: &[u8]) {
     while let Some(frame) = reader.after_false_start(5) {
         check(&mut reader, frame);
     }
-    // After any bytes the next answer is found, unless these bytes and the answer together have a right sum of eight
-    // bits.
+    // The next answer is found after any bytes, unless these bytes and the answer together happen to have a correct
+    // checksum of 8 bits.
     let state = wire::answer(5, &[7; 42]);
     reader.push(&state);
     let found = std::iter::from_fn(|| reader.next_frame()).last();
@@ -80,14 +81,14 @@ fn requests<'b>(robot: &mut wire::Incoming, pieces: impl Iterator<Item = &'b [u8
     found
 }
 
-/// Asserts the properties on an ATRV's line.
+/// Asserts the properties of the ATRV's line.
 pub fn atrv(bytes: &[u8]) {
     let whole: Vec<u8> = in_pieces(bytes).flatten().copied().collect();
     for marks in [true, false] {
         let mut robot = rflex::Incoming::new(marks);
         let found = commands(&mut robot, in_pieces(bytes));
         assert_eq!(found, commands(&mut rflex::Incoming::new(marks), [whole.as_slice()].into_iter()));
-        // Whatever it is in, this ends it.
+        // These bytes end any incomplete packet.
         let defaults = Packet { port: 2, id: 0, opcode: 10, data: &[] };
         let behind = commands(&mut robot, [&[0x1B, 0x03][..], defaults.written(false).bytes()].into_iter());
         assert_eq!(behind.last(), Some(&rflex::Request { port: 2, code: 10, data: Vec::new() }));
@@ -105,7 +106,7 @@ pub fn atrv(bytes: &[u8]) {
     assert_eq!(commands(&mut robot, [written.bytes()].into_iter()), [listed]);
 }
 
-/// Returns the packets that the ATRV's driver reads from the bytes: port, opcode and data of each.
+/// Returns the port, the opcode and the data of each packet that the ATRV's driver reads from the bytes.
 fn packets(reader: &mut Reader, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     let mut found = Vec::new();
     for byte in bytes {

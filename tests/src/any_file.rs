@@ -1,4 +1,4 @@
-//! Properties of any bytes of a file that is not a plan: an alphabet, a machine, a script, a world, a map, a path, a
+//! Properties of any bytes as a file that is not a plan: an alphabet, a machine, a script, a world, a map, a path, a
 //! robot's configuration, or a record. libFuzzer searches for bytes that violate them, and a test checks the corpus.
 //!
 //! Each function panics if a property does not hold.
@@ -36,8 +36,8 @@ static PLAN: LazyLock<Vec<Compiled>> = LazyLock::new(|| {
     compile(SourceId(0), plan, scripted(), None).0
 });
 
-/// Asserts that an alphabet is read or has errors that can be shown, and that an alphabet without errors can be bound
-/// as Rust.
+/// Asserts that an alphabet is read or has errors that can be shown, and that bindings in Rust can be generated for an
+/// alphabet without errors.
 pub fn alphabet(bytes: &[u8]) {
     let text = text(bytes);
     let mut sources = Sources::default();
@@ -56,12 +56,12 @@ pub fn alphabet(bytes: &[u8]) {
     }
 }
 
-/// Asserts that a machine is read or has an error. For a machine that is read, Theorem 1 must have an answer, and a
-/// plan with `after` must exist.
+/// Asserts that a machine is read or has an error. A machine that is read must have an answer by Theorem 1, and a plan
+/// with `after`.
 pub fn machine(bytes: &[u8]) {
     let Ok(machine) = theorem::read(&text(bytes)) else { return };
     let answer = theorem::decompile(&machine, STEPS);
-    // That it ends without a panic is all.
+    // The call only must not panic.
     let _ = theorem::as_printed(&machine, &answer);
     match &answer {
         theorem::Answer::String(found) => assert!(!theorem::string(&machine, found).is_empty()),
@@ -120,8 +120,7 @@ pub fn path(bytes: &[u8]) {
     );
 }
 
-/// Asserts that a record is read or has an error. A record that is read completely and written again must have the same
-/// turns.
+/// Asserts that a record is read or has an error, and that a complete record keeps its turns when it is written again.
 pub fn record(bytes: &[u8]) {
     let Ok((begin, turns)) = Records::open(bytes) else { return };
     let Ok(turns) = turns.collect::<Result<Vec<_>, _>>() else { return };
@@ -138,12 +137,12 @@ pub fn record(bytes: &[u8]) {
     RecordFile::new(&mut file).write_all(&written).expect("a record that was read can be written");
     let (again, same) = Records::open(file.as_slice()).expect("a record");
     let same: Vec<_> = same.map(|turn| turn.expect("a turn")).collect();
-    // As text, in which a NaN is equal to another.
+    // Compared as text, because NaN is not equal to itself.
     assert_eq!(format!("{again:?} {same:?}"), format!("{begin:?} {turns:?}"));
 }
 
-/// Asserts that a robot's configuration is read or has an error. The text that is shown for a configuration must be the
-/// same configuration.
+/// Asserts that a robot's configuration is read or has an error, and that the shown text of a configuration can be read
+/// back unchanged.
 pub fn configuration(bytes: &[u8]) {
     let name = format!("mdle-any-file-{}-{:?}.toml", std::process::id(), std::thread::current().id());
     let file = std::env::temp_dir().join(name);

@@ -1,8 +1,8 @@
 //! Mutant schemata: a file in which every function contains its mutants beside its original body. A mutant is selected
 //! at run time.
 //!
-//! A body becomes `match __mutant() { 17 => { the body with change 17 }, _ => { the original body } }`, so that a
-//! single build suffices for all mutants. This is impossible for code that rustc evaluates and for functions that
+//! A body becomes `match __mutant() { 17 => { the body with change 17 }, _ => { the original body } }`, so a single
+//! build contains all mutants. This is impossible for code that rustc evaluates at compile time, and for functions that
 //! return `impl Trait`.
 
 use std::ops::Range;
@@ -54,12 +54,12 @@ struct Variant {
 pub(crate) enum Body {
     /// Body with the change of this mutant.
     Changed(u32),
-    /// Original body, beside the bodies of these mutants.
+    /// Original body; contains the numbers of the mutants beside it.
     Original(Vec<u32>),
 }
 
 impl Schema {
-    /// Returns the text of a file with these mutants of the file, each with its number, from 1.
+    /// Returns the text of a file with these mutants, each with its number. Numbers begin at 1.
     ///
     /// # Errors
     /// Fails if the text is not Rust.
@@ -115,8 +115,7 @@ fn contains(outer: &Range<usize>, inner: &Range<usize>) -> bool {
     outer.start <= inner.start && inner.end <= outer.end
 }
 
-/// Bodies of functions that can select a mutant at run time, in the order of the file. Functions in modules are left
-/// out.
+/// Functions whose mutants can be selected at run time, in the order of the file. Functions in modules are left out.
 #[derive(Debug, Default)]
 struct Bodies {
     places: Vec<Range<usize>>,
@@ -148,7 +147,7 @@ impl<'ast> Visit<'ast> for Bodies {
     }
 }
 
-/// Returns `true` if the return type contains `impl Trait`, because each body would then have a different type.
+/// Returns `true` if the return type contains `impl Trait`. The bodies would then have different types.
 fn is_opaque(output: &ReturnType) -> bool {
     #[derive(Default)]
     struct Opaque(bool);

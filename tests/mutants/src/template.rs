@@ -1,4 +1,4 @@
-//! Finder of changes inside `quote!`: in tokens of emitted code, some of which are not expressions yet.
+//! Finds changes inside `quote!`, in tokens of emitted code, which are not all complete expressions.
 
 use std::ops::Range;
 
@@ -6,8 +6,8 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use crate::operators::{mistaken, neighbours};
 
-/// Calls `change` with each place of these tokens that can be changed, and its new text; `None` if it is left out.
-/// `text` is the file with the tokens.
+/// Calls `change` with each range that can be changed in these tokens and its new text, or with `None` to leave the
+/// range out. `text` is the file with the tokens.
 pub(crate) fn changes(text: &str, tokens: TokenStream, change: &mut impl FnMut(Range<usize>, Option<String>)) {
     let mut values = Vec::new();
     interpolated(tokens.clone(), &mut values);
@@ -18,7 +18,7 @@ pub(crate) fn changes(text: &str, tokens: TokenStream, change: &mut impl FnMut(R
     inside(tokens, change);
 }
 
-/// The places of all interpolated values.
+/// Appends the ranges of all interpolated values to `values`.
 fn interpolated(tokens: TokenStream, values: &mut Vec<Range<usize>>) {
     let mut hash = None;
     for token in tokens {
@@ -75,7 +75,7 @@ fn inside(tokens: TokenStream, change: &mut impl FnMut(Range<usize>, Option<Stri
     }
 }
 
-/// Two interpolated values next to each other in a list change places.
+/// Calls `change` for each pair of interpolated values next to each other in a list, with the two values exchanged.
 fn exchange(list: &Group, change: &mut impl FnMut(Range<usize>, Option<String>)) {
     let tokens: Vec<_> = list.stream().into_iter().collect();
     let items: Vec<_> = tokens.split(|token| is(token, ',')).collect();

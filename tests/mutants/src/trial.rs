@@ -1,4 +1,4 @@
-//! Tries a mutant with the tests, which run one after another; the first test that fails ends the trial.
+//! Tries a mutant with the tests, one after another, until a test fails.
 
 use std::ffi::OsString;
 use std::process::{Command, Stdio};
@@ -7,8 +7,7 @@ use std::time::{Duration, Instant};
 use crate::checkout::Checkout;
 use crate::mutant::Mutant;
 
-/// Packages that are built together. They must be built together because cargo's build of a package depends on the
-/// other packages that are requested.
+/// Packages that are built together, because cargo's build of a package depends on the other packages of the command.
 pub(crate) type Packages = &'static [&'static str];
 pub(crate) const RUNTIME: Packages = &["--package", "mdle-runtime"];
 const COMPILER: Packages = &["--package", "mdle-compiler", "--package", "mdle-tests"];
@@ -23,7 +22,7 @@ pub(crate) const TESTS: &[(Packages, &[&str])] = &[
     (COMPILER, &["--test", "compiled", "--", "machines::"]),
 ];
 
-/// Arguments for the tests of the rules of plans, each by a minimal plan.
+/// Arguments for the tests of single rules of plans.
 const RULES: &[&str] = &[
     "--test",
     "language",
@@ -47,9 +46,10 @@ pub(crate) fn name(test: usize) -> String {
     format!("cargo test {}", [packages, targets].concat().join(" "))
 }
 
-/// Time that a test may take in addition to three times its duration without a fault; a test that takes longer hangs.
+/// Time that a test may take beyond three times its duration without a fault; a test that takes longer counts as
+/// hanging.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// Time after which a build hangs.
+/// Time after which a build counts as hanging.
 const BUILD: Duration = Duration::from_secs(600);
 /// Maximum memory of a process, in KiB. Without a limit, a fault could use all memory.
 const MEMORY: &str = "8388608";
@@ -107,14 +107,14 @@ impl Trials {
         outcome
     }
 
-    /// Runs the tests on the current state of the copy, which has a fault in one of these packages, and returns the
-    /// result.
+    /// Runs the tests on the current state of the copy, which has a fault in one of the packages `changed`, and returns
+    /// the result.
     fn tested(&self, changed: Packages) -> Outcome {
         for (number, ((packages, targets), limit)) in TESTS.iter().zip(&self.limits).enumerate() {
             if *packages == RUNTIME && changed != RUNTIME {
                 continue;
             }
-            // A test that cannot be built any more has noticed as well.
+            // A test that cannot be built any more has caught the fault as well.
             let built = self.cargo(&[&["test", "--no-run"], packages, targets], BUILD);
             let ended = if built == Ended::Well { self.cargo(&[&["test"], packages, targets], *limit) } else { built };
             match ended {
@@ -126,7 +126,7 @@ impl Trials {
         Outcome::Survived
     }
 
-    /// Runs cargo in the copy. After the time `limit`, cargo is killed.
+    /// Runs cargo in the copy, and kills it after the time `limit`.
     fn cargo(&self, arguments: &[&[&str]], limit: Duration) -> Ended {
         let mut command = Command::new("sh");
         environment(&mut command, &self.checkout);
@@ -142,14 +142,14 @@ impl Trials {
             .expect("a shell");
         match status.code() {
             Some(0) => Ended::Well,
-            // 128 and the number of the signal: `timeout` dies of what it sends.
+            // 128 + 9: `timeout` killed cargo, or died of the signal that it sends.
             Some(137) | None => Ended::NotAtAll,
             Some(_) => Ended::Badly,
         }
     }
 }
 
-/// Returns the cargo that runs this program.
+/// Returns the path of the cargo that runs this program.
 pub(crate) fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
@@ -160,9 +160,9 @@ pub(crate) fn environment(command: &mut Command, checkout: &Checkout) {
         .current_dir(checkout.sources())
         .env("CARGO_TARGET_DIR", checkout.target())
         .env("CARGO_INCREMENTAL", "1")
-        // Nobody debugs what is built here, and without its tables that is faster.
+        // Debug information is not needed, and builds are faster without it.
         .env("CARGO_PROFILE_DEV_DEBUG", "false")
-        // Nobody reads where a test panicked, and to find that out takes longer than most tests.
+        // Backtraces are not needed, and producing one takes longer than most tests.
         .env("RUST_BACKTRACE", "0")
         .env("INSTA_UPDATE", "no")
         .env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "true")

@@ -1,18 +1,18 @@
-//! The worlds in which each plan makes sense, and the contacts that it requests.
+//! The worlds in which each plan makes sense, and whether it requests contact.
 
 /// Plans with the same name in a file or on a page of the book.
 pub(super) struct Row {
     pub(super) file: &'static str,
     pub(super) plan: &'static str,
-    /// Worlds in which the path of the plan is free where the plan does not look: a plan that drives ahead for a
-    /// certain time needs enough room. A plan that waits for `atIsection 1000` or for a range ahead must reach a wall
-    /// at a right angle, because a sonar gets no echo from a slanting wall.
+    /// Worlds in which the plan's path is free where the plan does not look: a plan that drives ahead for a certain
+    /// time needs enough space. A plan that waits for `atIsection 1000` or for a range ahead must reach a wall at a
+    /// right angle, because a sonar gets no echo from a slanting wall.
     pub(super) worlds: &'static str,
-    /// Reason why the plan requests contact; empty if it does not.
+    /// Reason why the plan requests contact; empty if it does not request any.
     pub(super) asks: &'static str,
     /// Maximum percentage of runs with a contact that the plan does not request.
     pub(super) most: u64,
-    /// Cause of such contacts.
+    /// Cause of the contacts that the plan does not request.
     pub(super) cause: &'static str,
 }
 
@@ -21,12 +21,12 @@ const fn row(file: &'static str, plan: &'static str, worlds: &'static str) -> Ro
 }
 
 impl Row {
-    /// Returns the row for a plan that requests contact, with the reason.
+    /// Marks the plan as requesting contact, with the reason.
     const fn asks(self, asks: &'static str) -> Self {
         Self { asks, ..self }
     }
 
-    /// Returns the row for a plan that touches something in at most `most` percent of the runs, with the cause.
+    /// Allows contacts that the plan does not request in at most `most` percent of the runs, with the cause.
     const fn touches(self, most: u64, cause: &'static str) -> Self {
         Self { most, cause, ..self }
     }

@@ -1,4 +1,4 @@
-//! Tests that odometry notices a robot at another landmark than that to which its plan leads.
+//! Tests that odometry detects a robot that has not reached the landmark to which its plan leads.
 
 use super::*;
 
@@ -7,7 +7,7 @@ fn a_robot_at_another_landmark_has_not_arrived() {
     let words = ["lab1", "office", "--start", "7.45,0.4,180", "--start-noise", "10cm,5deg", "--seed", "9950007"];
     let output = navigate(&folder("navigation_there"), &[&words[..], &["--goal", "11.5,0,0.9,270,15"]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
-    // As the paper prints it, the plan ends its first atom half-way through a turn, and the robot stays at lab 1.
+    // As printed in the paper, the plan ends its first atom half-way through a turn, and the robot stays at lab 1.
     let folder = folder("navigation_elsewhere");
     let graph = fs::read_to_string(root().join("plans/navigation/office.mdle")).unwrap();
     let printed = "  (Atom (atIsection 1001) (goAvoid 90 40 20))\n  (Atom (atIsection 0011)";

@@ -1,10 +1,10 @@
-//! Tests why an atom or a behavior did not begin, or did not begin again: in loops, in behaviors that ran, and with all
-//! names that tests of plans accept.
+//! Tests the reasons why an atom or a behavior did not begin, or did not begin again: in loops, in behaviors that ran,
+//! and with all names that tests of plans accept.
 
 use super::questions::answers;
 use super::scripted::{outputs, ping};
 
-/// The answer covers the time since the atom last began, and names the last of several chances.
+/// The answer covers the time since the atom last began, and names the last of several chances to begin.
 #[test]
 fn later_passes_count() {
     let plan = "{ Rounds (wait 10s)
@@ -13,14 +13,14 @@ fn later_passes_count() {
 }
 ";
     let outputs = outputs(50, |turn, y| {
-        // Near at the begin of the second pass, and not in the third.
+        // An obstacle is near at the beginning of the second pass, but not in the third.
         ping(y, 0, if (14..36).contains(&turn) { 0.4 } else { 2.0 });
     });
     let questions = ["--not go 1 0", "--not go 10 0", "--not go 20 0", "--not stop"];
     insta::assert_snapshot!(answers("rounds", plan, &outputs, &questions));
 }
 
-/// There is a chance in each pass; the answer names the first and the last chance.
+/// Each pass is a chance to begin; the answer names the first and the last chance.
 #[test]
 fn each_pass_is_a_chance() {
     let plan = "{ Passes (wait 10s)

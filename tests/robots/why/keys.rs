@@ -20,7 +20,7 @@ fn documented(head: &str, end: &str) -> BTreeSet<String> {
 }
 
 /// Removes the keys of an object, and of all objects inside it, from `unused`. `path` contains the keys that lead to
-/// the object. Undocumented keys are added to `others`. If several ends of a path are documented, the longest one
+/// the object. Undocumented keys are added to `others`. If several ends of a path are documented, the longest end
 /// counts.
 fn look(
     value: &Value,
@@ -36,7 +36,7 @@ fn look(
                 let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
                 let starts = path.match_indices('.').map(|(at, _)| at + 1);
                 let ends: Vec<_> = [0].into_iter().chain(starts).map(|at| path[at..].to_owned()).collect();
-                // A key of the answer itself is not a key of an object inside it.
+                // A key of the answer itself does not document the same key of a nested object.
                 let inside = ends.iter().filter(|end| end.contains('.') || **end == path);
                 match inside.into_iter().find(|end| known.contains(*end)) {
                     Some(end) => _ = unused.remove(end),

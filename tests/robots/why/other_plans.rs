@@ -47,7 +47,7 @@ fn only_the_plan_that_ran_explains() {
             answers.push(answer);
         }
     }
-    // Each command says the same.
+    // All commands print the same message.
     insta::assert_snapshot!(answers[..5].join("\n"));
     let own = asked(&folder, &["why", "run.mcap", "5.2", "--plan", "square.mdle"]);
     assert_eq!(own.replace(" --plan square.mdle", ""), asked(&folder, &["why", "run.mcap", "5.2"]));
@@ -70,7 +70,7 @@ fn a_record_of_an_unknown_robot_is_told_apart() {
     insta::assert_snapshot!(answers.join("\n"));
 }
 
-/// The record of an executable does not contain the text of its plan, but another plan is recognized by the laws,
+/// The record of an executable does not contain the text of its plan. Another plan is still recognized, by the laws,
 /// conditions and inputs.
 #[test]
 fn executables_have_a_plan_as_well() {

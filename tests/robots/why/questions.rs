@@ -146,8 +146,8 @@ fn memories_kept_a_condition_from_firing() {
     insta::assert_snapshot!(answers("memories", plan, &outputs, &questions));
 }
 
-/// Each operand inside NOT and RISING is shown with its value and unit. An operand that holds is shown with the amount
-/// or the time that is missing until NOT fires.
+/// Each operand inside NOT and RISING is shown with its value and unit. For an operand that holds, the answer names the
+/// amount or the time that is missing until NOT fires.
 #[test]
 fn operands_inside_not_have_values() {
     let plan = "{ Inside (wait 1min)
@@ -165,8 +165,8 @@ fn operands_inside_not_have_values() {
     insta::assert_snapshot!(answers("inside", plan, &outputs, &questions));
 }
 
-/// A law with a goal makes no progress, an interrupt that an enclosing scope has is removed, and passes of loops are
-/// counted.
+/// A law with a goal makes no progress, an interrupt that an enclosing scope also has is removed, and passes of loops
+/// are counted.
 #[test]
 fn laws_and_loops_took_part() {
     let plan = "{ Laws (bumper)

@@ -1,5 +1,5 @@
-//! Tests on random runs that the operands that `mdle why` names are exactly those whose change alone changes the
-//! transition. Each operand is changed in the output of the explained turn only.
+//! Tests on random runs that `mdle why` names exactly those operands whose change alone changes the transition. Each
+//! operand is changed in the output of the explained turn only.
 
 use std::fs;
 use std::path::Path;
@@ -55,7 +55,7 @@ fn sonar(operand: &str) -> usize {
     operand[at + 1..].split(' ').next().unwrap().parse().unwrap()
 }
 
-/// Returns outputs in which single ranges cross the limit now and then, so that not all operands fire at once.
+/// Returns outputs in which single ranges sometimes cross the limit, so that not all operands fire at once.
 fn random_outputs(chance: &mut Chance) -> Vec<Sensed> {
     let mut ranges = [1.5; 16].map(|range: f64| if chance.percent(50) { range } else { 0.5 });
     outputs(TURNS, |_, y| {
@@ -69,8 +69,8 @@ fn random_outputs(chance: &mut Chance) -> Vec<Sensed> {
 }
 
 /// Compares the operands that `mdle why` names with the effect of changing each operand, in the first turn with a
-/// transition. Returns the number of operands that were changed, and the number of those that decide; `None` for a run
-/// without a transition.
+/// transition. Returns the number of changed operands and the number of deciding operands, or `None` for a run without
+/// a transition.
 fn compare(folder: &Path, target: &Target, seed: u64) -> Option<(usize, usize)> {
     let mut chance = Chance::new(seed);
     let (text, outputs) = (plan(&mut chance), random_outputs(&mut chance));
@@ -96,7 +96,7 @@ fn compare(folder: &Path, target: &Target, seed: u64) -> Option<(usize, usize)> 
             let sonar = sonar(operand["operand"].as_str().unwrap());
             let range = 2.0 - outputs[number].pings[sonar].newest_first().next().unwrap().range.unwrap().0;
             let other = steps(number, Some(with_range(&outputs[number], sonar, range)));
-            // The first transition is what was explained: those after it read other operands.
+            // Only the first transition was explained; later transitions depend on other operands.
             let differs = original.first() != other.first();
             let named = operand["decided"] == true || place < ended && operand["suffices"] == true;
             assert!(operand["decided"] != true || place == ended, "seed {seed}, turn {number}, {operand}\n{text}");

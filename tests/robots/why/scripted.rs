@@ -1,4 +1,4 @@
-//! Writes records of runs whose outputs a test defines turn by turn.
+//! Writes records of runs whose outputs are defined by a test turn by turn.
 
 use std::fs::{self, File};
 use std::io::Write as _;
@@ -69,8 +69,8 @@ impl Scripted {
         record.write_all(&bytes).unwrap();
     }
 
-    /// Returns the transitions in the turn of the last output: the scope that ended, the text of its condition, and the
-    /// state that was entered.
+    /// Returns the transitions in the turn of the last output, each with the scope that ended, the text of its
+    /// condition, and the state that was entered.
     pub(super) fn last_steps(&self, outputs: &[Sensed]) -> Vec<(u32, String, u64)> {
         let mut machine = Machine::begin(self.loaded.plan(), &outputs[0], Nanos(0));
         let mut last = Vec::new();
@@ -100,7 +100,8 @@ impl Watch for Steps {
     }
 }
 
-/// Returns `turns` outputs. `change` is called with the number of each turn, and changes the previous output.
+/// Returns `turns` outputs. `change` is called with the number of each turn and a copy of the previous output, which it
+/// changes.
 pub(super) fn outputs(turns: u64, mut change: impl FnMut(u64, &mut Sensed)) -> Vec<Sensed> {
     let mut y = first();
     let turns = (0..turns).map(|number| {

@@ -39,15 +39,15 @@ fn all(folder: &Path, calls: &[&str]) -> String {
 fn answers_go_on_where_plans_replace_each_other() {
     let folder = recorded("several-plans", "shell out.mdle --paused -c commands");
     let calls = [
-        // The first plan, up to the turn in which another one takes over.
+        // The first plan runs up to the turn in which another plan takes over.
         "why run.mcap 4.2",
         "why run.mcap 4.5",
         "why run.mcap 6",
-        // The first plan again, where it was.
+        // The first plan continues where it was.
         "why run.mcap 6.5",
         "why run.mcap 8",
         "why run.mcap --not stop",
-        // Of the plan that was replaced, and of the one that drove at the end.
+        // Atoms of the plan that was replaced, and of the plan that drove at the end.
         "why run.mcap --not back.mdle:3",
         "why run.mcap --not out.mdle:2",
     ];

@@ -50,7 +50,7 @@ where
             let text = |number: &u32| source.operand(transition.scope, *number).map_or("unknown", |words| words.text);
             transition.fired(machine.plan(), operands.iter().map(text).collect::<Vec<_>>())
         });
-        // The law tells the frame that it was given; the machine tells whether it comes from a `FRAME here`.
+        // The law contains the angle that it was given; the machine knows whether the frame comes from `FRAME here`.
         let frame = machine.frame().and(given);
         writeln!(trace, "{}", Line { turn, t: *t, state: machine.state(), law, frame, fired })?;
         if machine.is_over() {
@@ -60,8 +60,8 @@ where
     Ok(())
 }
 
-/// Returns the law that computed this input. Returns `broken` if it is not the law `named`, or was not created when its
-/// atom began.
+/// Returns the law that computed this input, or `broken` if it is not the law `named` or was not created when its atom
+/// began.
 fn applied(input: Input, named: &str, began: Nanos, computed: u32) -> &'static str {
     match input.law.and_then(|law| LAWS.get(law)) {
         Some(law) if *law == named && input.began == began && input.computed == computed => law,

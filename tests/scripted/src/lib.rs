@@ -1,7 +1,7 @@
-//! A robot that consists only of a script: its output contains the report about each quark, and its input contains the
-//! law that was applied.
+//! A robot whose turns are defined by a script: its output contains the reported state of each quark, and its input
+//! identifies the law that was applied.
 //!
-//! Emitted Rust is compiled for it as for any target, so that its behavior can be compared with other machines.
+//! Emitted Rust is compiled for this robot as for any target, to compare its behavior with that of other machines.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Reports of a script, and inputs of the robot. Quarks are represented by the indices of their texts.
+//! Reports of a script, and inputs of the robot. Each quark is represented by the index of its text.
 
 use mdle_runtime::{Nanometers, Nanos, Pose, Radians};
 
@@ -138,12 +138,12 @@ pub(crate) fn duration(time: Nanos) -> f64 {
     if time == Nanos::MAX { f64::INFINITY } else { time.seconds() }
 }
 
-/// Returns the index of the text with this name and these arguments. Numbers are compared with a tolerance, because
-/// they were converted to SI units and back.
+/// Returns the index of the text with this name and these arguments, or `None` if there is none. Numbers are compared
+/// with a tolerance, because they were converted to SI units and back.
 pub(crate) fn number(texts: &[&str], name: &str, arguments: &[Argument]) -> Option<usize> {
     texts.iter().position(|text| {
         let mut words = text.split(' ').filter(|word| *word != "module");
-        // First, for reading numbers takes its time.
+        // The name is compared first, because parsing numbers is slow.
         if words.next() != Some(name) {
             return false;
         }
