@@ -23,7 +23,7 @@ use crate::random_script::script;
 static SIMULATOR: LazyLock<Alphabet> = LazyLock::new(|| alphabet(Some("sim")));
 static EVERYTHING: LazyLock<Alphabet> = LazyLock::new(|| alphabet(None));
 
-/// Maximum number of brackets of a plan for which Rust is emitted; `RUN` is the maximum for a plan that is run.
+/// Maximum number of brackets of a plan for which Rust is emitted. `RUN` is the maximum for a plan that is run.
 const EMITTED: usize = 1000;
 const RUN: usize = 100;
 
@@ -37,7 +37,7 @@ pub fn text(bytes: &[u8]) -> String {
 }
 
 /// Asserts that a text has a tree or errors, that the errors are inside the text and can be shown, and that an error
-/// after the text does not change the tree.
+/// after the last plan does not change the tree.
 pub fn parse(text: &str) {
     let mut sources = Sources::default();
     sources.add("before.mdle", "Γ");
@@ -45,7 +45,7 @@ pub fn parse(text: &str) {
     let arena = arena_for(text);
     let (file, found) = read(id, text, &arena);
     let tree = outline(&file);
-    // A brace may be closed by none and belong to no name.
+    // A brace can cause two errors: it has no partner, and it belongs to no name.
     assert!(found.len() <= 2 * text.len() + 1, "{} messages", found.len());
     assert!(!file.plans.is_empty() || has_errors(&found), "no plan and no error");
     for label in found.iter().flat_map(|diagnostic| &diagnostic.labels) {
@@ -53,7 +53,7 @@ pub fn parse(text: &str) {
     }
     shown(&sources, &found);
     if found.is_empty() {
-        // What is wrong behind the plans changes nothing in their trees.
+        // An error after the plans does not change their trees.
         let flawed = format!("{text}\n§\n");
         let arena = arena_for(&flawed);
         let (file, found) = read(id, &flawed, &arena);
@@ -62,8 +62,8 @@ pub fn parse(text: &str) {
     }
 }
 
-/// Asserts that the canonical layout of a text has the same tree and comments as the text, and is its own canonical
-/// layout. A text with errors must have no layout.
+/// Asserts that the canonical layout of a text has the same tree and comments as the text, and remains unchanged when
+/// it is laid out again. A text with errors must have no layout.
 pub fn layout(text: &str) {
     let id = SourceId(0);
     let arena = arena_for(text);
@@ -96,7 +96,7 @@ pub fn check(text: &str) {
     }
 }
 
-/// Asserts that a machine can be analysed, and that the analysis is consistent.
+/// Asserts that a machine can be analyzed, and that the results are consistent.
 fn analysed(machine: &Machine) {
     let analysis = analyze(machine);
     assert_eq!((analysis.states, analysis.atoms.len()), (machine.states(), machine.atoms().len()));
@@ -185,7 +185,7 @@ fn shown(sources: &Sources, found: &[Diagnostic]) {
     for diagnostic in found {
         assert!(!diagnostic.message.is_empty() && !diagnostic.message.contains('\n'), "{diagnostic:?}");
         let shown = sources.render(diagnostic);
-        // One that cannot be shown where it is would begin with its code.
+        // A diagnostic without a valid place would begin with its code.
         assert!(shown.starts_with("error[") || shown.starts_with("warning["), "{diagnostic:?}\n{shown}");
         assert!(!sources.message(diagnostic).to_json().is_empty(), "{diagnostic:?}");
     }

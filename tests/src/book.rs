@@ -6,8 +6,8 @@ use mdle_compiler::diagnostic::Code;
 
 use crate::repository::{TextFile, files, root};
 
-/// A fenced block of a page: the words after its backticks, which are separated by commas, and its content, in which
-/// included files are inserted.
+/// A fenced block of a page: the words after its backticks, which are separated by commas, and its content, with
+/// included files inserted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fence {
     /// Words of the block: first its kind, then its other properties.
@@ -17,7 +17,7 @@ pub struct Fence {
 }
 
 impl Fence {
-    /// Returns the name of the file to which the block is written, if it names one.
+    /// Returns the name of the file to which the block is written, or `None` if the block names no file.
     #[must_use]
     pub fn file(&self) -> Option<&str> {
         self.words.iter().skip(1).map(String::as_str).find(|word| word.contains('.'))
@@ -42,8 +42,7 @@ pub fn name(page: &TextFile) -> &str {
     page.path.trim_start_matches("docs/src/")
 }
 
-/// Returns the name of the page to which a link of `page` leads. The path of the link is relative to the folder of the
-/// page.
+/// Returns the name of the page to which `link`, a path relative to the folder of `page`, leads.
 #[must_use]
 pub fn leads_to(page: &TextFile, link: &str) -> String {
     if link.is_empty() {
@@ -87,7 +86,7 @@ pub fn fences(page: &TextFile) -> Vec<Fence> {
     found
 }
 
-/// Returns a line, or the file that the line includes, without the last line break.
+/// Returns a line or, if the line includes a file, the text of the file, without the last line break.
 fn included(line: &str) -> String {
     let Some(path) = line.strip_prefix("{{#include ").and_then(|line| line.strip_suffix("}}")) else {
         return line.to_owned();
@@ -120,7 +119,7 @@ pub fn anchors(page: &TextFile) -> Vec<String> {
     headings.map(|heading| heading.chars().filter_map(kept).collect()).collect()
 }
 
-/// Returns the chapter of all messages, from the texts of `mdlec explain`.
+/// Returns the generated chapter of all messages, with the texts of `mdlec explain`.
 #[must_use]
 pub fn messages() -> String {
     let mut text = "# All messages\n\n\

@@ -1,12 +1,12 @@
-//! Random choices that are the same on every machine, because they depend only on a seed.
+//! Random choices that are the same on every machine, because they depend on the seed only.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// Returns the number of times that a test repeats something with different random choices: `count` times the number in
-/// the variable `MDLE_LONG`.
+/// Returns how often a test repeats something with different random choices: `count` times the number in the variable
+/// `MDLE_LONG`.
 ///
-/// Without the variable it is half of `count`. `.ci/thorough` sets the variable.
+/// Without the variable, returns half of `count`. `.ci/thorough` sets the variable.
 ///
 /// # Panics
 ///
@@ -16,8 +16,8 @@ pub fn repeated(count: u64) -> u64 {
     factor().map_or(count.div_ceil(2), |factor| count * factor)
 }
 
-/// Returns the size of an input that takes an unoptimized mdlec long: `most` if the variable `MDLE_LONG` is more than
-/// 1, otherwise `less`.
+/// Returns the size of an input for which an unoptimized mdlec takes long: `most` if the variable `MDLE_LONG` is more
+/// than 1, `less` if not.
 ///
 /// # Panics
 ///

@@ -54,7 +54,7 @@ fn number(text: &str) -> &str {
     text.get(..end).unwrap_or_default().trim_end_matches('.')
 }
 
-/// Returns the section numbers of a page, with which its headings begin.
+/// Returns the numbers of a page's sections, with which their headings begin.
 #[must_use]
 pub fn numbered_sections(page: &TextFile) -> Vec<&str> {
     let headings = page.text.lines().filter(|line| line.starts_with('#'));

@@ -13,7 +13,7 @@ pub fn random_plan(chance: &mut Chance) -> String {
     text + "}\n"
 }
 
-/// Appends random elements of a behavior. Behaviors are nested at most `depth` deep in it.
+/// Appends random elements to a behavior. `depth` is the maximum depth of behaviors nested in it.
 fn strings(chance: &mut Chance, text: &mut String, depth: usize, labels: &mut usize) {
     for _ in 0..1 + chance.below(4) {
         let frame = chance.pick(&["", "", "FRAME 45 ", "FRAME here "]);

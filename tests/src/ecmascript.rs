@@ -1,4 +1,4 @@
-//! Evaluates the subset of ECMAScript's expressions that conditions of mdlec's SCXML machines use.
+//! Evaluates the subset of ECMAScript expressions that occurs in the conditions of mdlec's SCXML machines.
 
 use std::collections::BTreeMap;
 
@@ -57,7 +57,7 @@ pub fn evaluate(text: &str, data: &BTreeMap<String, Value>) -> Value {
     value
 }
 
-/// Parser that evaluates an expression in the same pass. Parts that are not `live` are parsed but not evaluated.
+/// Parser that evaluates an expression in the same pass. Parts with `live` set to `false` are parsed but not evaluated.
 struct Reader<'r> {
     rest: &'r str,
     data: &'r BTreeMap<String, Value>,
@@ -153,7 +153,7 @@ impl Reader<'_> {
         if self.takes("Math.round(") {
             let value = self.conditional(live);
             assert!(self.takes(")"));
-            // ECMAScript rounds halves up.
+            // ECMAScript rounds half up.
             return if live { Value::Number((value.number() + 0.5).floor()) } else { value };
         }
         let mut value = self.primary(live);

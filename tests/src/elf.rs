@@ -1,13 +1,14 @@
-//! Reads the sizes of an executable's sections. The tools that print them are not available on every machine.
+//! Reads the sizes of an executable's sections. The tools that print them are not installed on every machine.
 
 /// Returns the names and the sizes in bytes of the sections of a 64-bit ELF file with this machine's byte order.
 ///
 /// # Panics
-/// If the file is not such a file.
+/// If the file has another format.
 #[must_use]
 pub fn sections(file: &[u8]) -> Vec<(String, usize)> {
     assert!(file.starts_with(b"\x7fELF\x02"), "a 64-bit ELF file");
-    // The file's header says where the headers of sections are, how long, how many, and which has the names.
+    // The file header contains the position, the size and the number of the section headers, and the index of the
+    // section with the names.
     let (table, length, count, names) = (word(file, 0x28), half(file, 0x3a), half(file, 0x3c), half(file, 0x3e));
     let headers: Vec<_> = file[table..].chunks_exact(length).take(count).collect();
     let names = &file[word(headers[names], 0x18)..];

@@ -1,4 +1,4 @@
-//! Emits the Rust of a plan for the target `scripted`, or for a robot with other quarks.
+//! Emits the Rust of a plan for the target `scripted`, or for a robot with any other alphabet.
 
 use mdle_compiler::alphabet::{Alphabet, combine, read};
 use mdle_compiler::diagnostic::{SourceId, Sources};

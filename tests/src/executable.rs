@@ -25,8 +25,8 @@ pub fn mdle() -> &'static Path {
 
 /// Builds a binary, and returns its path.
 ///
-/// The command names the workspace and a test, so that cargo selects the same features of all libraries as in `cargo
-/// test --workspace`. Therefore nothing that this command has compiled is compiled again.
+/// The command names the workspace and a test, so that cargo selects the same features for all libraries as in
+/// `cargo test --workspace` and compiles nothing twice.
 fn built(binary: &str) -> PathBuf {
     let target = target();
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -66,8 +66,8 @@ pub fn folder(test: &str) -> PathBuf {
     folder.canonicalize().expect("a folder")
 }
 
-/// Runs `mdlec` with these arguments in `folder`, and returns its output without messages about builds of other tests.
-/// The cache is kept between test runs, so that only the first build compiles the runtime.
+/// Runs `mdlec` with these arguments in `folder`. Returns its output without the messages that name builds of other
+/// tests. The cache is kept between test runs, so that only the first build compiles the runtime.
 #[must_use]
 pub fn run_mdlec(folder: &Path, arguments: &[&str]) -> Output {
     let mut output = command(folder, arguments).output().expect("mdlec runs");
@@ -82,7 +82,7 @@ pub fn run_mdlec_reading(folder: &Path, arguments: &[&str], input: &str) -> Outp
     let mut command = command(folder, arguments);
     command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = command.spawn().expect("mdlec runs");
-    // Small enough for a pipe to hold, whether it is read or not. Dropped at once: that is the end of the input.
+    // The input fits into the pipe's buffer, so that writing never blocks. Dropping the pipe at once ends the input.
     let written = child.stdin.take().expect("a pipe").write_all(input.as_bytes());
     let output = child.wait_with_output().expect("mdlec runs");
     written.expect("mdlec reads its input");
@@ -97,10 +97,10 @@ pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Start of the messages about builds of other tests, which share the cache.
+/// Start of the message that is printed while another test, which shares the cache, builds.
 const WAITING: &str = "waiting for another ";
 
-/// Returns the messages without those about builds of other tests.
+/// Returns the messages without those that name builds of other tests.
 #[must_use]
 pub fn without_waiting(message: &str) -> String {
     message.lines().filter(|line| !line.starts_with(WAITING)).fold(String::new(), |text, line| text + line + "\n")

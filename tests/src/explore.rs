@@ -1,12 +1,12 @@
-//! Runs a plan by brute force: from each situation that the plan can reach, a turn for each combination of quark values
-//! and each step of time. It is written only from the rules (docs/src/reference/semantics.md, 3 to 6), and shares no
-//! code for steps with any machine.
+//! Explores a plan by brute force: from each reachable situation, runs a turn for each combination of quark values and
+//! each step of time. It is written only from the rules (docs/src/reference/semantics.md, 3 to 6), and shares no code
+//! for steps with any machine.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use mdle_compiler::plan::{Condition, Interrupt, Mark, Node, Plan, QuarkId, Record, RecordId, Situation};
 
-/// Values of the quarks in a turn. The indices are the numbers of the quarks.
+/// Values of the quarks in a turn, indexed by the numbers of the quarks.
 #[derive(Debug, Clone, Default)]
 pub struct QuarkValues {
     /// Interrupts that have fired.
@@ -35,7 +35,7 @@ pub struct Explorer<'p> {
     parts: Vec<Part<'p>>,
 }
 
-/// A part of the plan that is currently entered.
+/// A part of the plan that is entered.
 #[derive(Debug, Clone)]
 struct Frame {
     part: usize,
@@ -59,11 +59,11 @@ pub struct Run {
 /// Result of a turn.
 #[derive(Debug, Default)]
 pub struct Turn {
-    /// Numbers of the atoms that were current in the turn, in order. The law of the last one is applied unless the turn
-    /// is cut.
+    /// Numbers of the atoms that were current in the turn, in order. The law of the last atom is applied unless the
+    /// turn is cut.
     pub current: Vec<usize>,
-    /// Numbers of the parts that ended, each with the operands of its interrupt that fired; without operands if the law
-    /// completed.
+    /// Numbers of the parts that ended, each with the operands of its interrupt that fired, or without operands if the
+    /// law completed.
     pub ended: Vec<(usize, Vec<usize>)>,
     /// `true` if a law was applied.
     pub applied: bool,
@@ -195,7 +195,7 @@ impl<'p> Explorer<'p> {
         turn
     }
 
-    /// Returns the outermost part that ends, as an index among the entered parts, with the operands that fired. Returns
+    /// Returns the outermost part that ends, as an index among the entered parts, with the operands that fired, or
     /// `None` if no part ends.
     fn fired(&self, run: &Run, values: &QuarkValues) -> Option<(usize, Vec<usize>)> {
         for (place, frame) in run.frames.iter().enumerate() {
@@ -211,8 +211,7 @@ impl<'p> Explorer<'p> {
         is_done.then(|| (run.frames.len() - 1, Vec::new()))
     }
 
-    /// Ends the entered part with the index `place`, and enters its successor; returns `false` if there is no
-    /// successor.
+    /// Ends the entered part with the index `place` and enters its successor. Returns `false` if there is no successor.
     fn end(&self, run: &mut Run, mut place: usize, cause: Option<usize>) -> bool {
         let mut ended = vec![(run.frames[place].part, cause)];
         let next = loop {
@@ -254,7 +253,7 @@ impl<'p> Explorer<'p> {
         }
     }
 
-    /// Sets the memories of RISING conditions whose operand has not fired in this turn.
+    /// Sets the memories of the RISING conditions whose operand has not fired in this turn.
     fn remember(&self, run: &mut Run, values: &QuarkValues) {
         let mut set = Vec::new();
         for (place, frame) in run.frames.iter().enumerate() {
@@ -269,7 +268,7 @@ impl<'p> Explorer<'p> {
         set.into_iter().for_each(|(place, memory)| run.frames[place].memories[memory] = true);
     }
 
-    /// Returns a key that distinguishes situations. Times and distances are limited to `longest`, which exceeds all
+    /// Returns a key that identifies a situation. Times and distances are limited to `longest`, which exceeds all
     /// timers.
     fn key(&self, run: &Run, longest: u64) -> Vec<u64> {
         let mut key = Vec::new();
@@ -283,7 +282,7 @@ impl<'p> Explorer<'p> {
 
     /// Visits every turn from every reachable situation, breadth first, for each of these combinations of quark values
     /// and steps of time. If a condition reads the distance driven, each turn is visited with and without a movement.
-    /// Visits at most `most` situations, and returns `true` if these were all.
+    /// Visits at most `most` situations, and returns `true` if no situation was left out.
     pub fn explore(
         &self,
         values: &[QuarkValues],
@@ -291,7 +290,8 @@ impl<'p> Explorer<'p> {
         most: usize,
         visit: &mut impl FnMut(&Turn, &Run),
     ) -> bool {
-        /// Maximum mean number of transitions per situation, because searches with many cut turns take long.
+        /// Maximum mean number of transitions per situation. The search stops beyond it, because searches with many cut
+        /// turns take long.
         const TRANSITIONS_EACH: usize = 500;
         let longest = 20_000_000_000;
         let drives = self.parts.iter().any(|part| part.interrupt.is_some_and(|it| it.condition.drives()));

@@ -10,7 +10,7 @@ use mdle_compiler::{Compiled, builtin, compile, fsm};
 
 use crate::repository::TextFile;
 
-/// Returns the alphabet of a built-in target or, without a name, of a robot with every capability.
+/// Returns the alphabet of a built-in target or, if `target` is `None`, of a robot with every capability.
 #[must_use]
 pub fn alphabet(target: Option<&str>) -> Alphabet {
     let mut sources = Sources::default();
@@ -24,7 +24,7 @@ pub fn alphabet(target: Option<&str>) -> Alphabet {
     }
 }
 
-/// Returns the plans of a file, and the messages about it, for a robot.
+/// Compiles a file for a robot; returns its plans and the messages.
 #[must_use]
 pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
     let (sources, source) = sources(file);
@@ -50,7 +50,8 @@ pub fn tree(file: &TextFile) -> String {
     outline(&parse(SourceId(0), &file.text, &Arena::new()).0)
 }
 
-/// Returns the machine of a plan as text: its states with their laws, and a line with the moves of each interrupt.
+/// Returns the machine of a plan as text: its states with their laws, and a line with the transitions of each
+/// interrupt.
 #[must_use]
 pub fn machine(compiled: &Compiled) -> String {
     let file = fsm::fsm_file(&compiled.nondegenerate).expect("a small plan");

@@ -1,5 +1,5 @@
-//! The productions of the grammar of plans, as a list with the parts of each production, read from the parser
-//! generator's input.
+//! The productions of the grammar of plans, with the parts of each production, read from the parser generator's input
+//! file.
 
 use crate::repository::root;
 
@@ -68,14 +68,14 @@ fn is_name(text: &str) -> bool {
     text.starts_with(char::is_uppercase) && text.chars().all(char::is_alphanumeric)
 }
 
-/// Returns the parts of a production without the names that the action gives them, and without places.
+/// Returns the parts of a production without their names in the action, and without source positions.
 fn made_of(parts: &str) -> String {
     let named = |word: &str| match word.split_once(':') {
         Some((_, "@L" | "@R")) => String::new(),
         Some((_, part)) => part.to_owned(),
         None => word.to_owned(),
     };
-    // What stands between quotes is a token.
+    // Quoted text is a token.
     let pieces = parts.split('"').enumerate().map(|(number, piece)| match number % 2 {
         0 => piece.replace(['<', '>'], "").split(' ').map(named).collect::<Vec<_>>().join(" "),
         _ => format!("\"{piece}\""),

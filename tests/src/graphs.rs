@@ -1,4 +1,4 @@
-//! Strict parsers of mdlec's output for Graphviz and mermaid: anything that their grammars do not allow is an error.
+//! Strict parsers of mdlec's output for Graphviz and mermaid: anything that the grammars do not allow is an error.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -120,8 +120,8 @@ fn tokens(text: &str) -> Vec<String> {
     tokens
 }
 
-/// A state diagram of mermaid, with the states and transitions inside each composite state. The name of the diagram
-/// itself is empty.
+/// A state diagram of mermaid, with the states and transitions inside each composite state. The key of the top level is
+/// the empty name.
 #[derive(Debug, Default)]
 pub struct Diagram {
     /// States in each composite state.
@@ -172,7 +172,7 @@ pub fn read_mermaid(text: &str) -> Diagram {
     diagram
 }
 
-/// Asserts that a text contains characters with a meaning in mermaid only as numeric entities.
+/// Asserts that characters with a meaning in mermaid occur in a text only as numeric entities.
 fn assert_plain(text: &str) {
     let mut parts = text.split('#');
     let first = parts.next().unwrap_or_default();

@@ -1,5 +1,5 @@
-//! Shared code of the tests of this crate: random plans and scripts, the steps from a text to machines, robots' lines,
-//! and the files of the repository.
+//! Shared code of the tests: random plans and scripts, the steps from a text to machines, robots' lines, and the files
+//! of the repository.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test tool fails by panicking")]
 

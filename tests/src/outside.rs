@@ -1,5 +1,5 @@
-//! Packages outside the workspace, as readers of the book write them. They are built with the libraries that the
-//! workspace has compiled.
+//! Packages outside the workspace, as readers of the book write them. They are built with the libraries that were
+//! compiled for the workspace.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -11,7 +11,7 @@ use toml::Table;
 use crate::executable::target;
 use crate::repository::root;
 
-/// Uncomments the patch in a new target's manifest, and makes it refer to this checkout, as a reader of the book does.
+/// Uncomments the patch in a new target's manifest and points it to this checkout, as a reader of the book does.
 ///
 /// # Panics
 ///
@@ -26,21 +26,21 @@ pub fn patch(package: &Path) {
     adopt(package);
 }
 
-/// Gives a package the lock file and the profile of the workspace, so that most libraries that were compiled for the
-/// workspace are not compiled again.
+/// Copies the lock file and the profile of the workspace into a package, so that most libraries that were compiled for
+/// the workspace are not compiled again.
 ///
 /// # Panics
 ///
 /// If the package or the repository cannot be read or written.
 pub fn adopt(package: &Path) {
-    // No network is needed.
+    // With this lock file, no network is needed.
     fs::copy(root().join("Cargo.lock"), package.join("Cargo.lock")).unwrap();
     let manifest = package.join("Cargo.toml");
     let text = fs::read_to_string(&manifest).unwrap();
     fs::write(&manifest, format!("{text}\n{}", profile(&needed(package)))).unwrap();
 }
 
-/// Returns the names of the packages with which a package is built.
+/// Returns the names of the packages that the build of a package includes.
 fn needed(package: &Path) -> BTreeSet<String> {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     let command = command.args(["tree", "--offline", "--prefix", "none", "--format", "{p}"]).current_dir(package);
@@ -50,8 +50,8 @@ fn needed(package: &Path) -> BTreeSet<String> {
     lines.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned).collect()
 }
 
-/// Returns the part of the workspace's development profile that concerns these packages. The packages of this
-/// repository are not members of another workspace, but get the debug information of members.
+/// Returns the part of the workspace's development profile that concerns these packages. Packages of this repository
+/// are not members of the other workspace, but get the debug information of members.
 fn profile(needed: &BTreeSet<String>) -> Table {
     let manifest: Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
     let mut profile = manifest["profile"]["dev"].as_table().unwrap().clone();

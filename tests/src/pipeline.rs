@@ -10,10 +10,10 @@ use mdle_compiler::fsm::{Machine, expand, lower};
 use mdle_compiler::syntax::Loader;
 use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
 
-/// Maximum number of states of a plan whose expanded form is run as well.
+/// Maximum number of states up to which a plan is also run in its expanded form.
 const EXPANDED: u64 = 2000;
 
-/// Name of the only file that plans can use here.
+/// Name of the only file that plans can use in these tests.
 pub const LIBRARY_FILE: &str = "library.mdle";
 /// Text of [`LIBRARY_FILE`].
 pub const LIBRARY: &str =
@@ -64,8 +64,7 @@ pub fn sources(text: &str) -> Sources {
     placed(text).0
 }
 
-/// Returns the diagnostics of a text that are shown to a user, each with its byte range. Diagnostics in the library are
-/// left out.
+/// Returns the diagnostics of a text that are shown to a user, each with its byte range, except those in the library.
 #[must_use]
 pub fn diagnostics(text: &str) -> Vec<(Diagnostic, Range<usize>)> {
     let (sources, library, source) = placed(text);
@@ -104,7 +103,7 @@ fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
     found.iter().map(|diagnostic| sources.render(diagnostic)).collect()
 }
 
-/// A plan in the forms that the machines need.
+/// A plan in the forms that the machines run.
 #[derive(Debug)]
 pub struct Machines<'c> {
     compiled: &'c Compiled,

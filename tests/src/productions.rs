@@ -1,8 +1,8 @@
-//! Counts the occurrences of each production of the grammar in a text, from its tree and, for productions that trees
-//! omit, from the text.
+//! Counts how often each production of the grammar occurs in a text, from its tree and, for productions that the tree
+//! does not contain, from the text.
 //!
-//! Productions are named as in [`crate::grammar`]. An optional part is counted if it occurs. Units are counted by their
-//! names.
+//! Productions are named as in [`crate::grammar`]. An optional part is counted where it is present. Units are counted
+//! by name.
 
 mod conditions;
 
@@ -41,8 +41,8 @@ impl<'t> Counter<'t> {
         *self.counts.entry(production).or_default() += 1;
     }
 
-    /// Counts the productions of a list with `length` elements: `first` for its first element, and `further` for each
-    /// other element.
+    /// Counts the productions of a list with `length` elements: `first` for the first element, and `further` for each
+    /// following element.
     fn list(&mut self, length: usize, first: &'static str, further: &'static str) {
         for place in 0..length {
             self.met(if place == 0 { first } else { further });

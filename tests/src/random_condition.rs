@@ -1,4 +1,4 @@
-//! Generates random conditions and laws, in all spellings that plans may use.
+//! Generates random conditions and laws in all spellings that plans may use.
 
 use crate::chance::Chance;
 use crate::signals::comparison;
@@ -50,7 +50,7 @@ const INTERRUPTS: &[&str] = &[
     "stuck 1s",
 ];
 
-/// Timers. Among them are the steps of scripts, so that timers fire just before, at and just after a turn.
+/// Timers. Some are equal to the steps of scripts, so that timers fire just before, at and just after a turn.
 const TIMERS: &[&str] = &[
     "wait 0",
     "wait 0.05",
@@ -96,7 +96,7 @@ pub fn law(chance: &mut Chance, is_formal: bool) -> String {
     chance.pick(choices).to_owned()
 }
 
-/// Placeholder of an `after` operand until the labels of the definition are known; parentheses may enclose it.
+/// Placeholder of an `after` operand, possibly inside parentheses, until the labels of the definition are known.
 pub const AFTER: &str = "AFTER";
 
 /// Returns the texts of the operands of a condition's outermost OR.
@@ -130,7 +130,7 @@ pub fn condition(chance: &mut Chance) -> String {
     }
 }
 
-/// Returns a random quark. A few quarks are more frequent, so that scopes repeat each other's interrupts.
+/// Returns a random quark. A few quarks are more frequent, so that nested scopes often have the same interrupts.
 fn quark(chance: &mut Chance) -> String {
     if chance.percent(15) {
         return comparison(chance);

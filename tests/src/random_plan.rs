@@ -24,7 +24,7 @@ struct Scope {
     name: &'static str,
     /// Condition of the scope as text; `None` if it has no condition.
     condition: Option<String>,
-    /// Text of the timer of a scope in formal notation, in which a scope has no name; `None` for another notation.
+    /// Text of the timer of a scope in formal notation, in which a scope has no name; `None` in the other notations.
     formal: Option<&'static str>,
     body: Vec<Element>,
     /// Text after the body.
@@ -41,7 +41,7 @@ enum Element {
     Atom {
         condition: String,
         law: String,
-        /// Text of the timer of an atom in formal notation; `None` for another notation.
+        /// Text of the timer of an atom in formal notation; `None` in the other notations.
         formal: Option<&'static str>,
     },
     Scope(Scope),
@@ -56,7 +56,7 @@ enum Element {
     Reference(&'static str, Option<String>),
 }
 
-/// Names of scopes, among them names that emitted code uses itself.
+/// Names of scopes, including names that emitted code uses itself.
 const NAMES: &[&str] = &[
     "P", "Shake", "shake", "Running", "text", "turned", "fn", "Output", "None", "größe", "Atom1", "x_", "t", "Y",
     "law", "cursor", "Self_", "loop",
@@ -79,7 +79,7 @@ const GIVEN: [&[&str]; 7] = [
 ];
 /// Arguments for the parameter of `Stroll`, a plan in the used file.
 const OF_STROLL: &[&[&str]] = &[&["0.25", "100ms", "inf"]];
-/// Conditions with parameters.
+/// Conditions that use the parameters.
 const OF_PARAMETERS: &[&str] =
     &["wait T", "farOff far", "farOff(far) OR stuck 1", "t > T AND a", "NOT wait T", "pattern mask OR played tune"];
 /// Laws that use the parameters.
@@ -94,7 +94,7 @@ struct Growth<'c> {
     atoms: usize,
     /// `true` if loops may have thousands of passes.
     long: bool,
-    /// Plans to which this plan may refer, each with the choices for its arguments.
+    /// Plans to which this plan may refer, each with the possible values of its arguments.
     others: Vec<(&'static str, &'static [&'static [&'static str]])>,
     /// `true` if this plan has [`PARAMETERS`].
     own: bool,
@@ -139,7 +139,8 @@ impl RandomPlan {
 }
 
 impl Growth<'_> {
-    /// Returns the scope of a definition. Once all its labels are known, the operands of `after` are filled in.
+    /// Returns the scope of a definition. The operands of `after` are filled in once all labels of the definition are
+    /// known.
     fn definition(mut self, depth: usize) -> Scope {
         let mut scope = self.scope(depth);
         scope.ask(self.chance);
@@ -222,8 +223,8 @@ impl Growth<'_> {
         }
     }
 
-    /// Returns a loop. Many loops contain or end with a scope, because the end of the scope and the end of the pass
-    /// must be distinguished there.
+    /// Returns a loop. Many loops consist of a scope or end with one, to test that the end of the scope is
+    /// distinguished from the end of the pass.
     fn repeated(&mut self, depth: usize) -> Element {
         let times = match self.long && self.chance.percent(40) {
             true => self.chance.pick(&["3000", "5000", "1000000"]),

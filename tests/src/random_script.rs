@@ -25,9 +25,9 @@ pub fn script(chance: &mut Chance, turns: usize) -> String {
     let mut way: u64 = if chance.percent(80) { 0 } else { 1_234_567_890 };
     let mut heading = chance.pick(HEADINGS);
     let mut fired = vec![false; INTERRUPTS.len()];
-    // Laws that never complete are listed as well: that must change nothing.
+    // Laws that never complete are included: this must have no effect.
     let mut completed = vec![false; LAWS.len()];
-    // How readily interrupts fire and laws complete in this script, and how often they change at all.
+    // Probabilities, in this script, that interrupts fire and laws complete, and that they change between turns.
     let often = [2, 5, 10, 20, 40, 70][chance.below(6)];
     let done = [2, 5, 20, 60][chance.below(4)];
     let restless = [10, 50, 100][chance.below(3)];

@@ -29,11 +29,11 @@ pub fn files(endings: &[&str]) -> Vec<TextFile> {
             let path = entry.unwrap().path();
             let name = path.file_name().unwrap().to_str().unwrap();
             if path.is_symlink() {
-                // A file of another package, which is read there.
+                // The link points to a file of another package, which is read there.
                 continue;
             }
             if path.is_dir() {
-                // Cargo marks the folders that it makes; one that was made by hand may lack the mark.
+                // Cargo marks the folders that it creates; a folder that was created in another way may lack the mark.
                 let is_build = path == root().join("target") || path.join("CACHEDIR.TAG").exists();
                 if !name.starts_with('.') && !is_build {
                     folders.push(path);
@@ -54,7 +54,7 @@ fn read(path: &Path) -> TextFile {
     TextFile { path: path_text, text }
 }
 
-/// Returns the names that code takes from `root`: the name after `root::`, or each name in `root::{…}`. Comments are
+/// Returns the names that code uses from `root`: the name after `root::`, or each name in `root::{…}`. Comments are
 /// ignored.
 #[must_use]
 pub fn names_from(text: &str, root: &str) -> Vec<String> {

@@ -1,5 +1,5 @@
-//! Runs a plan loaded from its text or as its executable, in the simulator and on emulated robots, and collects the
-//! output and files of the run.
+//! Runs a plan, loaded from its text or compiled to an executable, in the simulator and on emulated robots, and
+//! collects the output and the files of the run.
 
 use std::fs;
 use std::path::Path;
@@ -34,8 +34,8 @@ pub struct RunOutput {
     pub files: Vec<Option<String>>,
 }
 
-/// Returns the result of a run in `folder`, and removes its files. In the texts, `called`, the words of the command
-/// before the options, is replaced by `PROGRAM`.
+/// Returns the result of a run in `folder`, and removes its files. In the texts, replaces `called`, the words of the
+/// command before the options, by `PROGRAM`.
 #[must_use]
 pub fn left(folder: &Path, called: &str, output: Output) -> RunOutput {
     let files = FILES.map(|file| {

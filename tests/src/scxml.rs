@@ -1,6 +1,6 @@
 //! A small interpreter of flat SCXML machines (W3C, "State Chart XML", appendix D), for the machines that mdlec writes.
-//! It takes transitions without an event first, in document order, until no such transition is enabled, and then
-//! processes the next event.
+//! It takes transitions without an event first, in document order, until none is enabled, and then processes the next
+//! event.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ pub struct Machine<'e> {
     pub data: BTreeMap<String, Value>,
 }
 
-/// Elements, each with the attributes and children that it may have.
+/// Known elements, each with its allowed attributes and children.
 const ELEMENTS: &[(&str, &[&str], &[&str])] = &[
     ("scxml", &["xmlns", "version", "datamodel", "name", "initial"], &["datamodel", "state", "final"]),
     ("datamodel", &[], &["data"]),
@@ -78,7 +78,7 @@ impl<'e> Machine<'e> {
         self.state.children.iter().filter(|child| child.name == "transition")
     }
 
-    /// Takes transitions without an event as long as one is enabled; returns the states that were left.
+    /// Takes transitions without an event while one is enabled; returns the states that were left.
     fn settle(&mut self) -> Vec<&'e str> {
         let mut left = Vec::new();
         loop {
@@ -129,7 +129,7 @@ impl<'e> Machine<'e> {
     }
 }
 
-/// Asserts that a document contains only known elements and attributes, and that each element is at an allowed place.
+/// Asserts that a document contains only known elements and attributes, each at an allowed place.
 fn assert_valid(root: &Element) {
     assert_eq!(root.attribute("xmlns"), "http://www.w3.org/2005/07/scxml");
     assert_eq!((root.attribute("version"), root.attribute("datamodel")), ("1.0", "ecmascript"));

@@ -8,7 +8,7 @@ use crate::chance::Chance;
 /// A comparison: its spellings, its canonical text, and a function that returns `true` if it holds.
 type Comparison = (&'static [&'static str], &'static str, fn(&Values) -> bool);
 
-/// Values of the signals in a turn. They are numbers from the lists below, so that each value has a text.
+/// Values of the signals in a turn. They are taken from the lists below, so that each value has a text.
 #[derive(Debug, Clone, Copy)]
 pub struct Values {
     /// Range of sonar 3, in metres.
@@ -41,7 +41,7 @@ const COMPARISONS: &[Comparison] = &[
     (&["v \\leq 0"], "v <= 0", |s| s.v <= 0.0),
 ];
 
-/// Comparisons of `t`, some of them with the lengths of timers.
+/// Comparisons of `t`, some of them with the durations of timers.
 const TIMES: &[&str] = &[
     "t >= 0.25",
     "t > 100ms",
@@ -71,7 +71,8 @@ pub fn comparison(chance: &mut Chance) -> String {
     chance.pick(spellings).to_owned()
 }
 
-/// Returns the values of the signals, in SI units, from the texts of a script; infinity for a signal without a text.
+/// Returns the values of the signals, in SI units, that the texts of a script give; infinity for a signal without a
+/// text.
 pub fn values(comparisons: &BTreeSet<String>) -> [f64; 5] {
     let value = |name: &str, values: &[f64], unit: f64| {
         let value = values.iter().find(|value| comparisons.contains(&format!("{name} == {value}")));

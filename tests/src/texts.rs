@@ -1,4 +1,4 @@
-//! Texts in this repository that the compiler reads: plans, examples, the corpus of fuzzing, and literals in tests.
+//! Texts in this repository that the compiler reads: plans, examples, the fuzzing corpus, and literals in tests.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use crate::any_text;
 use crate::repository::{files, root};
 
-/// Returns the corpus of fuzzing, the plans, and the examples in explanations, each with its origin.
+/// Returns the texts of the fuzzing corpus, the plans, and the examples in explanations, each with its origin.
 ///
 /// # Panics
 /// If a file cannot be read.
@@ -34,12 +34,12 @@ pub fn kept() -> Vec<(String, String)> {
 #[must_use]
 pub fn literals() -> Vec<(String, String)> {
     let mut texts = Vec::new();
-    // Plans in tests of the language server have a mark where the cursor is.
+    // Tests of the language server are left out: their plans contain a mark for the cursor.
     for file in files(&[".rs"]).into_iter().filter(|file| !file.path.starts_with("editors/")) {
         let Ok(tokens) = file.text.parse::<TokenStream>() else { continue };
         let mut found = Vec::new();
         strings(tokens, &mut found);
-        // A literal of `format!` doubles its braces.
+        // In a literal of `format!`, braces are doubled.
         let plans = found.into_iter().map(|text| text.replace("{{", "{").replace("}}", "}"));
         texts.extend(plans.filter(|text| text.contains("{ ")).map(|text| (file.path.clone(), text)));
     }

@@ -1,4 +1,4 @@
-//! Figures of paths that robots drove, such as their excess length over a straight line.
+//! Measures of the paths that robots drove, such as the excess length over a straight line.
 
 /// A place on the floor, in metres.
 pub type Place = [f64; 2];

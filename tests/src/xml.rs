@@ -16,7 +16,7 @@ pub struct Element {
 }
 
 impl Element {
-    /// Returns the value of an attribute; panics if the element does not have it.
+    /// Returns the value of an attribute; panics if the element does not have this attribute.
     #[must_use]
     pub fn attribute(&self, name: &str) -> &str {
         self.attributes.get(name).unwrap_or_else(|| panic!("<{}> has no `{name}`", self.name))

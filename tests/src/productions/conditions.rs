@@ -14,7 +14,7 @@ impl Counter<'_> {
     fn is_parenthesized(&self, condition: &Condition<'_>) -> bool {
         self.written(condition.span).starts_with('(')
             && match &condition.node {
-                // The parenthesis of its first operand may be the first of it all.
+                // An initial parenthesis may belong to the first operand only.
                 ConditionNode::Or(operands) | ConditionNode::And(operands) => {
                     operands.first().is_some_and(|first| first.span.start > condition.span.start)
                 }
@@ -152,7 +152,7 @@ impl Counter<'_> {
                     self.cause(cause);
                 }
             }
-            // In a list of operands these stand in parentheses.
+            // As operands, these are in parentheses.
             ConditionNode::Or(_) | ConditionNode::And(_) => self.or(condition),
             ConditionNode::Not(_) | ConditionNode::Rising(_) => self.or(condition),
             ConditionNode::Broken => {}

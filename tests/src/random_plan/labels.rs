@@ -8,7 +8,7 @@ use crate::random_condition::{AFTER, operands};
 type Labels = Vec<(String, Option<String>)>;
 
 impl Scope {
-    /// Replaces every [`AFTER`] in the scope by an `after` of a label of this definition.
+    /// Replaces every [`AFTER`] in the scope by an `after` with a label of this definition.
     pub(super) fn ask(&mut self, chance: &mut Chance) {
         let mut labels = Labels::new();
         self.body.iter().for_each(|element| element.labels(&mut labels));
@@ -59,7 +59,7 @@ impl Element {
     }
 }
 
-/// Replaces each placeholder [`AFTER`] in a condition by an `after` of one of these labels, with or without a cause.
+/// Replaces each placeholder [`AFTER`] in a condition by an `after` with one of these labels, with or without a cause.
 fn fill(condition: &mut String, chance: &mut Chance, labels: &Labels) {
     while let Some(at) = condition.find(AFTER) {
         let after = if labels.is_empty() { "a".to_owned() } else { asked(chance, labels) };
@@ -70,10 +70,10 @@ fn fill(condition: &mut String, chance: &mut Chance, labels: &Labels) {
 fn asked(chance: &mut Chance, labels: &Labels) -> String {
     let (label, condition) = &labels[chance.below(labels.len())];
     let mut operands = condition.as_deref().map(operands).unwrap_or_default();
-    // Parentheses around the whole of it are none of an operand.
+    // Parentheses around the whole condition do not belong to an operand.
     operands
         .retain(|operand| *operand != "null" && !(operand.starts_with('(') && Some(*operand) == condition.as_deref()));
-    // An operand that asks a label itself is not written out yet.
+    // An operand that contains an `after` itself is not filled in yet.
     let operands: Vec<_> = operands.into_iter().filter(|operand| !operand.contains(AFTER)).collect();
     if operands.is_empty() || chance.percent(40) {
         return format!("(after {label})");

@@ -6,7 +6,7 @@ use super::{Element, PARAMETERS, RandomPlan, Scope};
 use crate::chance::Chance;
 use crate::pipeline::LIBRARY_FILE;
 
-/// Mark between two elements at a position where a comma is allowed. It occurs in no other text.
+/// Mark between two elements where a comma is allowed. It does not occur in plans.
 const BETWEEN: char = '\u{1}';
 
 impl fmt::Display for RandomPlan {
@@ -24,7 +24,7 @@ impl RandomPlan {
     }
 }
 
-/// A plan whose text is written with all marks.
+/// A plan that is written with all marks.
 struct Marked<'p>(&'p RandomPlan);
 
 impl fmt::Display for Marked<'_> {
@@ -54,7 +54,7 @@ impl Scope {
         match (&self.condition, self.body.first()) {
             (Some(condition), _) => write!(f, " ({condition})")?,
             (None, Some(Element::Atom { .. } | Element::Scope(_)) | None) => {}
-            // An open string there would be read as the condition.
+            // Without it, an open string would be parsed as the condition.
             (None, Some(Element::Labelled(..) | Element::Framed(..) | Element::Loop { .. }))
             | (None, Some(Element::String(_) | Element::Reference(..))) => write!(f, " (null)")?,
         }
@@ -68,7 +68,7 @@ fn bare(law: &str) -> &str {
     law.strip_prefix('(').and_then(|law| law.strip_suffix(')')).unwrap_or(law)
 }
 
-/// Writes elements. Before each element but the first, writes a mark if `may_precede` returns `true` for the element.
+/// Writes elements. Before each element except the first, writes a mark if `may_precede` returns `true` for it.
 fn write_all(elements: &[Element], may_precede: impl Fn(&Element) -> bool, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     elements.iter().enumerate().try_for_each(|(number, element)| {
         if number > 0 && may_precede(element) {
@@ -79,7 +79,7 @@ fn write_all(elements: &[Element], may_precede: impl Fn(&Element) -> bool, f: &m
 }
 
 impl Element {
-    /// Returns `true` if the text of this element, after a comma in parentheses, cannot be a condition.
+    /// Returns `true` if this element cannot be parsed as a condition after a comma inside parentheses.
     fn is_no_condition(&self) -> bool {
         match self {
             Self::Labelled(..) | Self::Framed(..) | Self::Atom { .. } | Self::Scope(_) => true,
