@@ -1,16 +1,17 @@
-//! A robot's alphabet 𝒜 = U ∪ B′ as types, for plans whose quarks are known by name only (paper, Definition 1).
+//! Interface to a robot's alphabet 𝒜 = U ∪ B′, its laws U and its interrupts B′ (paper, Definition 1), for plans that
+//! refer to quarks only by name.
 
 use crate::{
     Bits, Comparison, Completes, Control, Interrupt, Law, Meters, MetersPerSecond, Nanos, Output, Radians,
     RadiansPerSecond, Signal, SonarId, Volts,
 };
 
-/// The quarks of one robot, each kind as one type; [`alphabet!`](crate::alphabet!) implements it for the tables that
-/// `mdlec bind` writes from the robot's `alphabet.mdle`.
+/// Alphabet of one robot, with one type for each kind of quark. [`alphabet!`](crate::alphabet!) implements this trait
+/// from the tables that `mdlec bind` writes for the robot's `alphabet.mdle`.
 ///
-/// `wait` is not among its interrupts: time is the machine's business.
+/// The interrupt `wait` is not part of an alphabet, because the machine itself measures time.
 pub trait Alphabet {
-    /// The robot's output.
+    /// Output of the robot.
     type Output: Output;
     /// Input of the robot; its default is the null input.
     type Input: Default;
@@ -23,35 +24,35 @@ pub trait Alphabet {
     /// A running law of the alphabet; a law that has no completion never completes.
     type Law: Law<Self::Output, Input = Self::Input> + Completes<Self::Output>;
 
-    /// Name of the target, as `--target` takes it.
+    /// Name of the target, as in `--target`.
     const NAME: &'static str;
-    /// Hash of the alphabet's text: a plan that was compiled for another alphabet does not run.
+    /// Hash of the alphabet's text; a plan that was compiled for another alphabet is rejected.
     const HASH: u64;
     /// Capabilities of the robot, in the alphabet's words, such as `sonar[16]`.
     const CAPABILITIES: &'static [&'static str];
     /// Ranges of the parameters that the alphabet limits.
     const LIMITS: &'static [Limit];
 
-    /// The interrupt of this name with these arguments; `None` if the alphabet has no such signature.
+    /// Returns the interrupt with this name and these arguments; `None` if the alphabet has no such signature.
     fn interrupt(name: &str, arguments: &[Argument<'_>]) -> Option<Self::Interrupt>;
-    /// The signal of this name with these arguments; `None` if the alphabet has no such signature.
+    /// Returns the signal with this name and these arguments; `None` if the alphabet has no such signature.
     fn signal(name: &str, arguments: &[Argument<'_>]) -> Option<Self::Signal>;
-    /// A comparison of its signals as one of its interrupts; `None` if it has no signals.
+    /// Converts a comparison of signals to an interrupt of the alphabet; `None` if the alphabet has no signals.
     fn comparison(comparison: Comparison<Self::Signal, Self::Signal>) -> Option<Self::Interrupt>;
-    /// The law of this name with these arguments; `None` if the alphabet has no such signature.
+    /// Returns the law with this name and these arguments; `None` if the alphabet has no such signature.
     fn control(name: &str, arguments: &[Argument<'_>]) -> Option<Self::Control>;
 }
 
-/// The range of a parameter that the alphabet declares with one, in SI units; both ends may be asked for.
+/// Range that the alphabet declares for a parameter, in SI units, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// The quark.
+    /// Name of the quark.
     pub quark: &'static str,
-    /// The parameter.
+    /// Name of the parameter.
     pub parameter: &'static str,
-    /// The lowest value.
+    /// Minimum value.
     pub least: f64,
-    /// The highest.
+    /// Maximum value.
     pub most: f64,
 }
 
@@ -66,7 +67,7 @@ pub enum Argument<'a> {
     Angle(Radians),
     /// An `angular_rate`.
     AngularRate(RadiansPerSecond),
-    /// A `time`; [`Nanos::MAX`] for ever.
+    /// A `time`; [`Nanos::MAX`] means forever.
     Time(Nanos),
     /// A `voltage`.
     Voltage(Volts),
@@ -74,9 +75,9 @@ pub enum Argument<'a> {
     Number(f64),
     /// An `integer`.
     Integer(i64),
-    /// A `count`; [`u64::MAX`] without end.
+    /// A `count`; [`u64::MAX`] means without end.
     Count(u64),
-    /// A word of `bits`, the one written first in front.
+    /// A word of `bits`, in the order in which they are written.
     Bits(&'a [bool]),
     /// A `sonar`.
     Sonar(SonarId),
@@ -98,9 +99,10 @@ impl<const N: usize> Bits<N> {
 /// Declares `Alphabet`, `AnyInterrupt`, `AnySignal`, `AnyControl` and `AnyLaw` from the tables of a robot's alphabet,
 /// which `mdlec bind` writes.
 ///
-/// `Output` and `Input` are the robot's, `NAME` and `HASH` those of its alphabet, all in scope. A capability names the
-/// trait that `Output` has to implement, if there is one. A limit is in SI units. A quark is its name, its type, and
-/// the constant function that makes it of its arguments, which returns `None` for arguments of another signature.
+/// `Output` and `Input` of the robot, and `NAME` and `HASH` of its alphabet, must be in scope. A capability is followed
+/// by the trait that `Output` must implement, if there is one. Limits are in SI units. A quark is declared by its name,
+/// its type, and a constant function that creates the quark from its arguments, or returns `None` for arguments of
+/// another signature.
 #[macro_export]
 macro_rules! alphabet {
     (
@@ -147,7 +149,8 @@ macro_rules! alphabet {
             $(#[doc = concat!("`", $signal_name, "`.")] $signal($signal),)*
         }
 
-        // Through the reference, so that an enum without variants is matched as well.
+        // Matches the value instead of the reference: a match on a reference to an enum without variants does not
+        // compile.
         impl $crate::Signal<Output> for AnySignal {
             fn value(&self, y: &Output) -> f64 {
                 match *self { $(Self::$signal(ref signal) => $crate::Signal::value(signal, y),)* }
@@ -196,13 +199,13 @@ macro_rules! alphabet {
             }
         }
 
-        // The output has what the capabilities need.
+        // Checks at compile time that the output implements the traits of the capabilities.
         const _: () = {
             const fn capable<Y: $($($crate::capability::$needed +)?)*>() {}
             capable::<Output>()
         };
 
-        /// The quarks of this robot by their names.
+        /// Alphabet of this robot, which finds quarks by name.
         #[derive(Debug)]
         pub struct Alphabet;
 
@@ -236,7 +239,7 @@ macro_rules! alphabet {
     (@completed $law:ident $y:ident $t:ident completes) => { $crate::Completes::completed($law, $y, $t) };
     (@by_name $function:ident $any:ident [$($name:literal $kind:ident $of:path,)*]) => {
         fn $function(name: &str, arguments: &[$crate::Argument<'_>]) -> ::core::option::Option<$any> {
-            // Several quarks may have one name.
+            // Several quarks may share a name.
             $(if name == $name && let ::core::option::Option::Some(quark) = $of(arguments) {
                 return ::core::option::Option::Some($any::$kind(quark));
             })*

@@ -5,15 +5,15 @@ use crate::{
     Links, Meters, Nanos, Output, Peer, Pings, Pose, PublishedNumber, Radians, Setpoint, SonarId, Twist, Volts,
 };
 
-/// `odometry`: the robot measures its pose and its velocities, in axes that stay fixed while it is switched on.
+/// `odometry`: the robot measures its pose and its velocities, in coordinates that stay fixed while it is switched on.
 pub trait Odometry: Output {
     /// Returns the pose.
     fn pose(&self) -> Pose;
     /// Returns the measured velocities.
     fn velocity(&self) -> Twist;
-    /// Returns the angle by which walls deviate from the axes of a frame because the heading has drifted; one of these
-    /// axes has the direction `axis`. Returns 0 unless the robot has a better estimate than its odometry, for example
-    /// from a [`crate::Compass`].
+    /// Returns the angle by which heading drift makes walls deviate from the axes of a frame, one of which has the
+    /// direction `axis`. Returns 0 unless the robot has a better estimate than its odometry, for example from a
+    /// [`crate::Compass`].
     fn drift(&self, _axis: Radians) -> Radians {
         Radians(0.0)
     }
@@ -101,7 +101,7 @@ pub trait Paths: Output {
 /// `modules`: an engine runs the plan, together with modules that publish values which no sensor of the robot
 /// measures.
 pub trait Modules: Output {
-    /// Returns the last number that this module has published under this name; `None` before the first publication.
+    /// Returns the last number that the module has published for this attribute; `None` before the first publication.
     fn published(&self, module: &str, attribute: &str) -> Option<PublishedNumber>;
 }
 

@@ -1,9 +1,9 @@
-//! Measures the drift of the heading by odometry from walls: wheels slip in turns, so that this heading becomes wrong,
-//! while walls do not turn.
+//! Estimates the drift of the odometry heading from walls: wheels slip in turns, which falsifies this heading, while
+//! walls do not turn.
 //!
 //! Walls are assumed to run at right angles to each other. The drift is an estimate with an error, which grows with
-//! each turn and with the distance driven. A measurement is weighted by its own error. It is rejected if it deviates
-//! from the estimate by more than both errors allow, because the echo is then not from such a wall.
+//! each turn and with the distance driven. A measurement is weighted by its own error. A measurement that deviates from
+//! the estimate by more than both errors allow is rejected, because the echo is then not from such a wall.
 
 mod line;
 #[cfg(test)]
@@ -14,7 +14,7 @@ use core::f64::consts::FRAC_PI_2;
 use crate::{Meters, Nanos, PINGS_KEPT, Pings, Pose, Radians, SONARS, Shape};
 use line::Line;
 
-/// The sonars that look to the left and to the right, each with the sign of its direction.
+/// Sonars that face left and right, each with the sign of its direction.
 const SIDES: [(usize, f64); 2] = [(4, 1.0), (12, -1.0)];
 /// Maximum angle between the robot's heading and walls along which it drives.
 const ALONG: Radians = Radians::from_degrees(25.0);
@@ -64,14 +64,14 @@ const MOST: Radians = Radians::from_degrees(20.0);
 /// Estimate of the drift of the heading by odometry, from walls at right angles to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compass {
-    /// The direction of the walls in the axes of odometry, in radians; 0 if nothing has drifted.
+    /// Direction of the walls in odometry coordinates, in radians; 0 if the heading has not drifted.
     drift: f64,
     /// Error of `drift`, in radians.
     error: f64,
-    /// The part of `drift` by which the first walls lay askew to the axes of odometry; `None` before any wall
-    /// is measured.
+    /// Part of `drift` that is the angle between the first walls and the axes of odometry; 0 if they count as parallel,
+    /// and `None` before any wall is measured.
     askew: Option<f64>,
-    /// The pose by odometry at the last output.
+    /// Pose by odometry at the last output.
     last: Pose,
     /// Origin and direction of the axis along which the lines of the walls are measured; `None` while the robot does
     /// not drive along walls.
@@ -96,8 +96,8 @@ impl Default for Compass {
 }
 
 impl Compass {
-    /// Returns the angle by which the drift of odometry has turned a frame, one of whose axes has the direction `axis`
-    /// by odometry; 0 while the drift is not known.
+    /// Returns the angle by which odometry drift has turned a frame with an axis in the direction `axis` by odometry; 0
+    /// while the drift is not known.
     ///
     /// A frame is assumed to be parallel to the walls. But if the first walls lay askew to the axes of odometry, only
     /// the later drift of a frame along these axes is known, and the result for any other frame is 0.
@@ -109,8 +109,8 @@ impl Compass {
         Radians(if self.error <= BELIEVED && is_sound { drift } else { 0.0 })
     }
 
-    /// Updates the drift with the last pings of a robot of this shape, and its pose by odometry. The odometry of a
-    /// robot whose sonars all ping in every turn is assumed not to drift.
+    /// Updates the drift with the last pings and the pose by odometry of a robot of this shape. Does nothing for a
+    /// robot whose sonars all ping in every turn: its odometry is assumed not to drift.
     pub fn take(&mut self, pings: &[Pings; SONARS], odometry: Pose, shape: &Shape) {
         if shape.confirmation >= PINGS_KEPT {
             return;
@@ -133,7 +133,7 @@ impl Compass {
         if self.askew.is_none() {
             let askew = if off.abs() <= ALONG_AXES { 0.0 } else { off };
             (self.askew, self.drift) = (Some(askew), self.drift + askew);
-            // Lines are measured along the walls from now on.
+            // An axis askew to the walls is dropped: lines are measured along the walls from now on.
             self.way = self.way.filter(|_| askew == 0.0);
         }
         let (ours, theirs) = (self.error * self.error, error * error);
@@ -176,7 +176,8 @@ impl Compass {
             let Some(ping) = newest.filter(|ping| ping.at > line.last) else { continue };
             line.last = ping.at;
             let Some(range) = ping.range.filter(|range| range.0 < WITHIN) else { continue };
-            // The echo comes from where the wall faces the sonar, whichever way that looks.
+            // The echo comes from the point of the wall that is nearest to the sonar, whatever direction the sonar
+            // faces.
             let off = ping.pose.theta.0 - origin.theta.0;
             let (sin, cos) = libm::sincos(origin.theta.0);
             let (x, y) = (ping.pose.x.0 - origin.x.0, ping.pose.y.0 - origin.y.0);
@@ -221,7 +222,7 @@ impl Compass {
             return;
         };
         self.judged = newest;
-        // The nearest of two: few ranges that mean nothing are too short.
+        // The smaller of the last two ranges, because few wrong ranges are too short.
         let range = |sonar: usize| pings.get(sonar % SONARS)?.nearest(2).map(|range| range.0);
         let mut nearest = None;
         for sonar in (0..SONARS).step_by(4) {

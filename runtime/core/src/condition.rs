@@ -29,7 +29,8 @@ pub enum Condition<I> {
     /// Fires when the operand fires and was false in an earlier turn of this scope, as a memory records: the
     /// numbers of the memory and of the operand.
     Rising(u32, u32),
-    /// Fires while a memory of an ending is set: the level of the memory's scope, and the number of the memory.
+    /// Fires while the memory that an element has ended is set: the level of the memory's scope, and the number of the
+    /// memory.
     After(u16, u32),
 }
 
@@ -49,7 +50,7 @@ pub(crate) struct Reading<'r, I, Y, M> {
 
 impl<I> Condition<I> {
     /// Returns `true` if the condition has fired. Operands with numbers below `from` are ignored. The recursion is as
-    /// deep as the parentheses in the condition's text are nested.
+    /// deep as parentheses are nested in the condition's text.
     pub(crate) fn fired<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> bool
     where
         I: Interrupt<Y>,

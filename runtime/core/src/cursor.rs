@@ -1,6 +1,5 @@
-//! The cursor that walks a plan's machine: which atom follows when a scope ends, and which scopes and loops
-//! then restart (docs/src/reference/semantics.md, 5.3 and 6; the paper's third type of transition with its
-//! counter c(t)).
+//! The cursor of a plan's machine: determines which atom follows when a scope ends, and which scopes and loops then
+//! restart (docs/src/reference/semantics.md, 5.3 and 6; the paper's third type of transition with its counter c(t)).
 
 use crate::fsm::{Bracket, Kind};
 use crate::{Begin, Entries, Follows, Frame, Fsm, Here, Nanometers, Nanos, Output, Slots};
@@ -47,7 +46,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     }
 
     /// Records the output of a turn, and the time for which the law of the previous turn has made no progress. Called
-    /// before anything in the turn is read or entered.
+    /// first in each turn, before a condition is read or a scope is entered.
     #[inline(always)]
     pub(crate) fn observe<Y: Output>(&mut self, y: &Y, stalled: Option<Nanos>) {
         self.entered.observe(y, stalled);
@@ -118,7 +117,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     /// if the plan is then over.
     pub fn end(&mut self, fsm: Fsm<'_>, level: u16, t: Nanos) -> bool {
         let mut outwards = fsm.outwards(self.scope(fsm, level));
-        // What ends together with the scope has the same last atom.
+        // Brackets that end together with the scope have the same last atom.
         let last = outwards.next().map_or(0, |(_, scope)| scope.last);
         for (holder, around) in outwards {
             if last != around.last {
@@ -137,7 +136,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     /// Moves to the successor of a scope that has ended at time `t`, as [`Fsm::follows`] computed it beforehand.
     pub fn follow(&mut self, follows: Follows, t: Nanos) {
         self.atom = follows.atom;
-        // Most plans without timers store no level.
+        // Most plans without timers store no levels.
         if self.entered.is_empty() {
             return;
         }
@@ -165,7 +164,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     /// `holder` is `None`.
     fn open(&mut self, fsm: Fsm<'_>, atom: u32, holder: Option<u32>, t: Nanos) {
         self.atom = atom;
-        // Known when the plan is compiled, and then nobody looks at the tables.
+        // If both are empty in generated code, the compiler knows this and removes the table lookup below.
         if self.entered.is_empty() && self.left.as_ref().is_empty() {
             return;
         }

@@ -12,7 +12,8 @@ pub trait Entries {
     /// Records that the scope of this level is entered at time `t`.
     fn note(&mut self, level: u16, t: Nanos);
     /// Records the output of a turn, and the time for which the law of the previous turn has made no progress
-    /// ([`Law::stalled`](crate::Law::stalled)). Called before anything in the turn is read or entered.
+    /// ([`Law::stalled`](crate::Law::stalled)). Called first in each turn, before a condition is read or a scope is
+    /// entered.
     #[inline(always)]
     fn observe<Y: Output>(&mut self, _y: &Y, _stalled: Option<Nanos>) {}
     /// Returns the time for which the law of the previous turn has made no progress; `None` if the law has no goal, or
@@ -62,7 +63,7 @@ impl<S: AsRef<[Nanos]> + AsMut<[Nanos]>> Entries for S {
     }
 }
 
-/// The frame of an atom inside a `FRAME here`.
+/// Frame of an atom inside a `FRAME here`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Here {
     /// Level of the scope whose entry determines the heading.
@@ -94,9 +95,9 @@ pub struct Stamps<S, F = &'static [Option<Here>]> {
     slots: S,
     /// The frame of each atom, in the order of the atoms.
     frames: F,
-    /// The odometer's reading and the heading in this turn; the `time` is not used.
+    /// Odometer reading and heading in this turn; the `time` is not used.
     now: Stamp,
-    /// The pose in the previous turn; `None` before the first.
+    /// Pose in the previous turn; `None` before the first turn.
     last: Option<Pose>,
     /// Time for which the law of the previous turn has made no progress.
     stalled: Option<Nanos>,

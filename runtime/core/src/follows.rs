@@ -1,13 +1,13 @@
-//! Computes the successor of a scope before the plan runs, where no loop is involved (docs/src/reference/semantics.md,
-//! 5.3; Eq. 2: the single destination of a transition matrix).
+//! Computes the successor of a scope before the plan runs, if the successor depends on no loop
+//! (docs/src/reference/semantics.md, 5.3; Eq. 2: the single destination of a transition matrix).
 
 use crate::Fsm;
 use crate::fsm::Kind;
 
-/// Successor of a scope that depends on no loop, so that it is known before the plan runs.
+/// Successor of a scope that depends on no loop and is therefore known before the plan runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Follows {
-    /// The atom that becomes current; the number of atoms when the plan is over.
+    /// Atom that becomes current; the number of atoms when the plan is over.
     pub atom: u32,
     /// Level of the outermost scope that is entered with the atom.
     pub from: u16,

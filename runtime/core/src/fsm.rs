@@ -6,7 +6,7 @@
 //! `(s, ξ)^2` cover the same atoms, but an interrupt ξ leaves the first plan, while it starts the second pass of the
 //! second plan.
 
-/// A plan's machine: tables that generated code holds as constants and a loaded plan owns.
+/// Tables of a plan's state machine: constants in generated code, or owned by a loaded plan.
 ///
 /// Invariants, which `mdlec` establishes: brackets are in pre-order, bracket 0 is the plan, and each bracket's children
 /// partition its atoms; atom `a` is the bracket `atoms[a].scope`, which has no children.
@@ -16,7 +16,7 @@ pub struct Fsm<'a> {
     pub brackets: &'a [Bracket],
     /// The atoms as written, from left to right.
     pub atoms: &'a [Atom],
-    /// The number of the termination state: `N`, one more than the expanded plan has atoms.
+    /// Number of the termination state: `N`, the number of atoms of the expanded plan plus one.
     pub termination: u64,
 }
 
@@ -59,7 +59,7 @@ pub enum Kind {
     },
     /// An open string that is run several times: the paper's counter c(t).
     Loop {
-        /// Number of passes in all; 0 for a loop without end.
+        /// Total number of passes; 0 for a loop without end.
         times: u64,
         /// Number of enclosing loops, which is the index of the loop's counter in a cursor.
         slot: u16,

@@ -1,4 +1,5 @@
-//! Runtime of every plan: the machine of Algorithm 1, the traits of a kinetic state machine, quarks, units and time.
+//! Runtime of every plan: the state machine of Algorithm 1, the traits of a kinetic state machine, quarks, units and
+//! time.
 //!
 //! To implement a robot: [`Robot`], [`Output`] and the traits of [`capability`]. To implement a quark:
 //! [`Interrupt`], [`Control`], [`Law`] and [`Completes`]. For generated code and its callers: [`fsm`],

@@ -6,22 +6,22 @@ use crate::{Nanos, Pose, Twist};
 /// Maximum number of other robots that one plan names.
 pub const PEERS: usize = 8;
 
-/// Age from which the state of another robot counts as stale and the link to it as down.
+/// Age from which the state of another robot counts as stale, and the link to that robot as down.
 pub const STALE: Nanos = Nanos(500_000_000);
 
 /// The newest state of another robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeerState {
-    /// Pose of the robot, in the axes of the receiver's own odometry.
+    /// Pose of the robot, in the receiver's own odometry coordinates.
     pub pose: Pose,
     /// Measured velocities of the robot.
     pub velocity: Twist,
     /// Time since the state arrived.
     pub age: Nanos,
-    /// Number of scopes with a `rendezvous` with the receiver that the robot has entered.
+    /// Number of times that the robot has entered a scope with a `rendezvous` with the receiver.
     pub rounds: u64,
-    /// Number of the atom that the robot's plan ran, from 1 in the order of its text; [`PeerState::OVER`] once the plan
-    /// was over, and 0 before it began.
+    /// Number of the atom that the robot's plan was running, from 1 in the order of the plan's text;
+    /// [`PeerState::OVER`] if the plan was over, and 0 if it had not begun.
     pub atom: u64,
 }
 
@@ -35,8 +35,8 @@ impl PeerState {
 pub struct Peer {
     /// Name of the robot.
     pub name: &'static str,
-    /// Number of scopes with a `rendezvous` with this robot that the receiver had entered by the end of the previous
-    /// turn.
+    /// Number of times that the receiver had entered a scope with a `rendezvous` with this robot, by the end of the
+    /// previous turn.
     pub rounds: u64,
     /// The newest state that has arrived; `None` before the first arrival.
     pub state: Option<PeerState>,
@@ -49,7 +49,7 @@ impl Peer {
         self.state.as_ref().filter(|state| state.age < STALE)
     }
 
-    /// Returns `true` if the robot has entered at least as many scopes with a `rendezvous` as the receiver has.
+    /// Returns `true` if the robot has entered scopes with a `rendezvous` at least as often as the receiver.
     #[must_use]
     pub fn meets(&self) -> bool {
         self.state.is_some_and(|state| state.rounds >= self.rounds)

@@ -121,10 +121,11 @@ impl<P: Plan> Machine<P> {
         Turn::Over
     }
 
-    /// Leaves the scope that ends, and enters the atom that follows. Returns `true` if none follows: the plan is over.
+    /// Leaves the scope that ends, and enters the atom that follows. Returns `true` if no atom follows, so that the
+    /// plan is over.
     ///
-    /// The function is inlined, so that a plan whose code names the atom that follows needs no table to enter
-    /// it.
+    /// The function is inlined: a plan whose generated code contains the successor then enters it without a table
+    /// lookup.
     #[inline(always)]
     fn step<const OBSERVES: bool, W: Watch>(&mut self, ending: Ending, y: &P::Output, t: Nanos, watch: &mut W) -> bool {
         let looked = W::LOOKS.then(|| self.look(ending.cause, y, t, watch));

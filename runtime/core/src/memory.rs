@@ -1,4 +1,4 @@
-//! Memories of a plan: those of RISING in each entered scope, and those of labels, in which `after` reads which
+//! Memories of a plan: one for each RISING in an entered scope, and those of labels, from which `after` reads which
 //! elements ended last (docs/src/reference/semantics.md, 2.2 and 2.3).
 
 use crate::Slots;
@@ -57,14 +57,14 @@ pub struct Fact {
 }
 
 impl MarkRow {
-    /// Returns the labels of the elements that end with `bracket`; `marks` holds the labels of the plan, in the
+    /// Returns the labels of the elements that end with `bracket`; `marks` contains the labels of the plan, in the
     /// order of their brackets.
     pub(crate) fn of(marks: &[Self], bracket: u32) -> &[Self] {
         let before = |bound: u32| marks.partition_point(|mark| mark.bracket < bound);
         marks.get(before(bracket)..before(bracket.saturating_add(1))).unwrap_or(&[])
     }
 
-    /// Returns the facts of this label; `facts` holds the facts of the plan.
+    /// Returns the facts of this label; `facts` contains the facts of the plan.
     pub(crate) fn facts(self, facts: &[Fact]) -> &[Fact] {
         let (first, count) = (self.first_fact as usize, self.facts as usize);
         facts.get(first..first.saturating_add(count)).unwrap_or(&[])
@@ -127,7 +127,7 @@ mod tests {
         }
         memories.forget(1);
         assert!(memories.is_set(0, 1) && !memories.is_set(1, 0) && !memories.is_set(2, 1));
-        // What there is no room for is never set.
+        // A memory without a place in the storage is never set.
         memories.set(9, 0, true);
         assert!(!memories.is_set(9, 0));
     }

@@ -22,8 +22,8 @@ pub struct StoredPath {
     pub setpoints: &'static [Setpoint],
 }
 
-/// The paths that a plan can replay. They are read before the robot moves and stay until the program ends, so
-/// an output can refer to all of them and still be copied in every turn.
+/// The paths that a plan can replay. They are loaded before the robot moves and stay in memory until the program ends,
+/// so an output can refer to all paths and still be copied in every turn.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PathStore(&'static [StoredPath]);
 

@@ -28,9 +28,8 @@ pub trait Plan {
     /// done; `None` if the atom continues.
     fn next(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Self::Output, t: Nanos) -> Option<Ending>;
 
-    /// Returns `false` if the plan keeps neither odometry, progress nor memories: the machine then calls none of
-    /// [`Entries::observe`], [`Plan::leave`] and [`Plan::settle`] in a turn. The value never changes while the plan
-    /// runs.
+    /// Returns `false` if the plan keeps neither odometry, progress nor memories; the machine then does not call
+    /// [`Entries::observe`], [`Plan::leave`] and [`Plan::settle`]. The value never changes while the plan runs.
     #[inline(always)]
     fn observes(&self) -> bool {
         true
@@ -130,7 +129,7 @@ impl Cause {
 pub struct Ending {
     /// Cause of the end, with the level of the enclosing scope that ends.
     pub cause: Cause,
-    /// The successor, if it is known before the plan runs; the cursor finds it otherwise.
+    /// Successor of the scope, if it is known before the plan runs; `None` if the cursor has to find it.
     pub follows: Option<Follows>,
 }
 

@@ -24,7 +24,7 @@ impl Pose {
     }
 
     /// Returns the pose at distance `range` from this position in direction `bearing`, with the heading `bearing`. Both
-    /// poses and `bearing` are in the same axes.
+    /// poses and `bearing` are in the same coordinates.
     #[must_use]
     pub fn towards(&self, bearing: Radians, range: Meters) -> Self {
         let (sin, cos) = libm::sincos(bearing.0);
@@ -62,7 +62,7 @@ impl Frame {
         Self(Radians(self.0.0 + by.0))
     }
 
-    /// Returns an angle of this frame as an angle in the axes of odometry.
+    /// Converts an angle of this frame to odometry coordinates.
     #[must_use]
     pub fn outward(&self, angle: Radians) -> Radians {
         Radians(self.0.0 + angle.0).wrapped()

@@ -1,5 +1,5 @@
-//! Shows foreign text to people: no character of it moves the cursor, colours the terminal or reverses the direction of
-//! text.
+//! Displays untrusted text safely: no character of it can move the cursor, colour the terminal or reverse the direction
+//! of text.
 
 use core::fmt::{self, Write};
 
@@ -27,12 +27,12 @@ impl<T: fmt::Display> fmt::Display for PrintableLines<T> {
     }
 }
 
-/// Returns `true` if a character has a visible form, or is part of its neighbour's form, as an accent is.
+/// Returns `true` if a character is visible by itself, or changes its neighbour as an accent does.
 ///
-/// These characters are not printable: control characters (`Cc`), separators of lines and paragraphs (`Zl`,
-/// `Zp`), characters that reverse text, join it, or are invisible (`Cf`, except the signs of Arabic, Syriac and
-/// Kaithi that enclose numbers, and the layout of hieroglyphs), and the two characters `U+FFFE` and `U+FFFF`,
-/// which no XML may have.
+/// These characters are not printable: control characters (`Cc`), separators of lines and paragraphs (`Zl`, `Zp`),
+/// characters that reverse text, join it, or are invisible (`Cf`, except the signs of Arabic, Syriac and Kaithi that
+/// enclose numbers, and the layout of hieroglyphs), and the two characters `U+FFFE` and `U+FFFF`, which XML does not
+/// allow.
 #[must_use]
 pub const fn is_printable(letter: char) -> bool {
     !matches!(

@@ -1,5 +1,5 @@
-//! Numbers that modules publish for a plan, with their times, limited to those that the plan reads (paper,
-//! section III-B), and the states of the other robots that the plan names.
+//! Data from outside the robot that a plan reads: numbers that modules publish, with their times (paper, section
+//! III-B), and the states of other robots.
 
 use crate::{Links, Nanos};
 
@@ -39,7 +39,7 @@ pub struct Published {
 }
 
 impl Published {
-    /// Published numbers of no module.
+    /// No published numbers.
     pub const NONE: Self = Self::new(&[]);
 
     /// Returns the storage for the numbers of these attributes before any number is published. Attributes after the
@@ -80,7 +80,7 @@ impl Published {
         }
     }
 
-    /// Returns the last number that the module has published under this name; `None` before the first publication.
+    /// Returns the last number that the module has published for this attribute; `None` before the first publication.
     #[must_use]
     pub fn number(&self, module: &str, attribute: &str) -> Option<PublishedNumber> {
         let place = self.names.iter().position(|name| name.module == module && name.attribute == attribute)?;

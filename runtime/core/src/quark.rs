@@ -5,10 +5,10 @@ use crate::{Frame, Measured, Nanos, Radians};
 
 /// An interrupt quark: a condition on the output.
 pub trait Interrupt<Y: ?Sized> {
-    /// Returns `true` if the interrupt has fired: where the paper's active-low function is 0.
+    /// Returns `true` if the interrupt has fired. The paper's function is active low: it is then 0.
     fn fired(&self, y: &Y) -> bool;
 
-    /// Returns `true` if the interrupt has fired, given that the law of the previous turn reports `stalled`
+    /// Returns `true` if the interrupt has fired, given the report `stalled` of the law of the previous turn
     /// ([`Law::stalled`]). For `stuck`, this is called instead of [`Interrupt::fired`]; other interrupts ignore the
     /// report.
     #[inline(always)]
@@ -26,9 +26,9 @@ pub trait Interrupt<Y: ?Sized> {
 /// Time and frame in which an atom begins, for its law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Begin {
-    /// The time of the turn in which the atom is entered.
+    /// Time of the turn in which the atom is entered.
     pub now: Nanos,
-    /// The frame of the atom, which includes the enclosing `FRAME`s.
+    /// Frame of the atom, which includes the enclosing `FRAME`s.
     pub frame: Frame,
 }
 

@@ -6,8 +6,8 @@ use crate::{Links, Nanometers, Nanos, Pose, Published, Twist};
 
 /// A robot, which takes an input, returns the output that follows, and can be stopped.
 ///
-/// Once an `exchange` has failed the robot is stopped and not used again. An implementation must leave the hardware's
-/// own watchdog armed, so that a program that dies stops the robot as well.
+/// Once an `exchange` has failed, the robot is stopped and not used again. An implementation must leave the hardware's
+/// own watchdog armed, so that the robot also stops when the program dies.
 pub trait Robot {
     /// Output `y` of the sensors, which includes all values that this robot's quarks read.
     type Output: Output;
@@ -22,7 +22,7 @@ pub trait Robot {
     /// Fails if the robot does not answer, answers nonsense, or reports that it cannot move.
     fn exchange(&mut self, input: &Self::Input) -> Result<Self::Output, Self::Error>;
 
-    /// Stops the robot with its own stop command; called on every way out.
+    /// Stops the robot with its own stop command; called however the run ends.
     ///
     /// # Errors
     /// Fails if the command could not be delivered; the hardware's watchdog then stops the robot.
@@ -72,8 +72,8 @@ pub trait Output {
         Nanos::ZERO
     }
 
-    /// Returns the time from the last exchange that brought new measurements to the exchange of this output; zero if
-    /// this output has new measurements.
+    /// Returns the age of the measurements in this output: the time since the last exchange that brought new
+    /// measurements; zero if this exchange brought new ones.
     fn data_age(&self) -> Nanos {
         Nanos::ZERO
     }

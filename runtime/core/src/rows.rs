@@ -44,7 +44,8 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
     /// Returns the guard of the outermost enclosing scope whose interrupt has fired; `None` if no interrupt has fired.
     #[inline(always)]
     fn outermost(&self, cursor: &Cursor<E, P>, y: &OutputOf<T>, t: Nanos) -> Option<&Guard<InterruptOf<T>>> {
-        // From inside out, and the last one found counts: so the outermost wins, however deep scopes are nested.
+        // The search goes from the inside outwards and keeps the last match, so the outermost interrupt wins at any
+        // nesting depth.
         let (guards, mut here, mut outermost) = (self.table.guards(), self.own, None);
         while let Some(guard) = guards.get(here as usize) {
             let fired = match &guard.condition {
@@ -114,7 +115,7 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
         let mut here = *own;
         while let Some(guard) = table.guards().get(here as usize) {
             let mut from = 0;
-            // One after the other: a memory that is set changes nothing about those that are still to be.
+            // One memory at a time: setting a memory does not affect the search for the next one.
             while let Some(low) = guard.condition.first_low(&reading(table, memory, guard, cursor, y, t), from) {
                 memory.set(guard.level, low, true);
                 from = low.saturating_add(1);

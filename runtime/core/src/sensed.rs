@@ -13,8 +13,8 @@ pub struct Sensed {
     /// Time of the exchange that brought this output, since the first exchange. Times of pings are on the same
     /// clock.
     pub at: Nanos,
-    /// Time from the last exchange that brought new measurements to this one; zero if this one brought new
-    /// measurements.
+    /// Age of the measurements: the time from the last exchange that brought new measurements to the exchange of this
+    /// output; zero if this exchange brought new ones.
     pub data_age: Nanos,
     /// Pose of the robot by its own odometry.
     pub odometry: Pose,
@@ -120,7 +120,7 @@ impl DiffDrive for Sensed {
 impl SonarRing for Sensed {
     fn pings(&self, sonar: SonarId) -> &Pings {
         let [first, ..] = &self.pings;
-        // Numbers of sonars are below 16.
+        // `first` is never used, because sonar numbers are below 16.
         self.pings.get(sonar.number()).unwrap_or(first)
     }
 

@@ -26,7 +26,7 @@ impl<Y: ?Sized, S: Signal<Y>> Signal<Y> for Operand<S> {
     }
 }
 
-/// A comparison of a signal: an interrupt that has fired while the comparison is true.
+/// A comparison of a signal: an interrupt that fires while the comparison is true.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Comparison<S, O> {
     signal: S,
@@ -52,7 +52,7 @@ impl<Y: ?Sized, S: Signal<Y>, O: Signal<Y>> Interrupt<Y> for Comparison<S, O> {
     }
 }
 
-/// Type for the signals of a robot without signals.
+/// Signal type of a robot without signals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoSignal {}
 
@@ -66,7 +66,7 @@ impl<Y: ?Sized> Signal<Y> for NoSignal {
 mod tests {
     use super::*;
 
-    /// Signal that is the first of the two numbers of an output.
+    /// A signal: the first of the two numbers of an output.
     struct First;
     struct Second;
 

@@ -23,7 +23,8 @@ impl SonarId {
     /// Returns the sonar's number, below [`SONARS`].
     #[must_use]
     pub const fn number(self) -> usize {
-        // It is below 16 as it is. Masked once more, the optimiser sees it too, and an index into a ring cannot panic.
+        // The number is already below 16. The mask shows this to the optimizer, so that indexing a ring needs no code
+        // that panics.
         (self.0 & 15) as usize
     }
 

@@ -72,8 +72,8 @@ pub struct OperandWords<'a> {
     pub written: &'a str,
     /// Line in which the operand begins.
     pub at: SourceLine,
-    /// Positions in `written` at which measured values are shown: first that of the signal, then that of the signal
-    /// with which it is compared.
+    /// Positions in `written` at which measured values are shown: first the value of the signal, then the value of the
+    /// signal with which it is compared.
     pub values: &'a [ValueWords<'a>],
 }
 

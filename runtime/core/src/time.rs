@@ -19,7 +19,7 @@ impl Nanos {
     /// Returns this time in seconds.
     #[must_use]
     pub const fn seconds(self) -> f64 {
-        // A run of three months is below 2^53 nanoseconds, so exact; longer ones round to microseconds.
+        // Exact up to 2^53 nanoseconds, a run of three months; longer times are rounded to microseconds.
         self.0 as f64 / 1e9
     }
 }

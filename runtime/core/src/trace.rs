@@ -98,7 +98,7 @@ impl fmt::Display for Seconds {
         let Nanos(nanos) = self.0;
         let (seconds, mut rest) = (nanos / 1_000_000_000, nanos % 1_000_000_000);
         write!(f, "{seconds}.")?;
-        // Digit by digit: to be told a width at run time, `write!` needs a path that panics.
+        // Digit by digit, because a width that `write!` gets at run time adds code that can panic.
         loop {
             rest = rest.saturating_mul(10);
             write!(f, "{}", rest / 1_000_000_000)?;

@@ -1,4 +1,4 @@
-//! The quantities that a quark can take. Each has a type of its own, so that a speed cannot be passed where an
+//! Quantities that a quark can take as arguments. Each has its own type, so that a speed cannot be passed where an
 //! angle is expected.
 
 /// Declares quantities: a newtype over `f64` in one SI unit.
@@ -13,13 +13,13 @@ macro_rules! quantities {
 quantities! {
     /// A length, in metres.
     Meters;
-    /// A speed in metres a second.
+    /// A speed, in metres per second.
     MetersPerSecond;
-    /// An angle in radians, counter-clockwise positive.
+    /// An angle, in radians, counter-clockwise positive.
     Radians;
-    /// A turn rate in radians a second, counter-clockwise positive.
+    /// A turn rate, in radians per second, counter-clockwise positive.
     RadiansPerSecond;
-    /// A voltage in volts.
+    /// A voltage, in volts.
     Volts;
 }
 
@@ -40,7 +40,7 @@ impl Radians {
     #[must_use]
     pub fn wrapped(self) -> Self {
         use core::f64::consts::{PI, TAU};
-        // Most angles are at most a turn off, where the difference is exact as well, and much faster.
+        // Most angles are at most one turn outside the range. For these a subtraction is exact too, and much faster.
         let size = self.0.abs();
         if size < PI {
             self

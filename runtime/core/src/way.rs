@@ -14,7 +14,7 @@ impl Nanometers {
     /// Returns the length rounded to the nearest nanometre; zero for a negative length or NaN.
     #[must_use]
     pub fn round(length: Meters) -> Self {
-        // Conversion to an integer saturates, and makes 0 of what is not a number.
+        // The conversion to an integer saturates, and converts NaN to 0.
         Self(libm::round(length.0 * 1e9) as u64)
     }
 

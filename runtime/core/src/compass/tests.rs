@@ -1,4 +1,4 @@
-//! Tests of the compass: robots in hallways and rooms, with handwritten pings.
+//! Tests the compass with handwritten pings of robots in hallways and rooms.
 
 use super::*;
 use crate::capability::Steering;
@@ -49,7 +49,7 @@ impl Trial {
         }
     }
 
-    /// Returns the drift, in degrees, in a frame one of whose axes has this direction, in degrees.
+    /// Returns the drift, in degrees, of a frame with an axis in the direction `axis`, in degrees.
     fn drift(&self, axis: f64) -> f64 {
         self.compass.drift(Radians::from_degrees(axis)).degrees()
     }
@@ -107,7 +107,7 @@ fn the_drift_is_kept_while_the_robot_turns() {
         trial.hears(Pose { theta, ..Pose::ORIGIN }, &[], &SHAPE);
     }
     assert!((trial.drift(0.0) - 6.0).abs() < 1.0, "{}", trial.drift(0.0));
-    // A wall that would be 30 degrees off is of something else.
+    // A line 30 degrees off is not taken for a wall.
     trial.drives(126.0, 3.0, 0.0);
     assert!((trial.drift(0.0) - 6.0).abs() < 1.0, "{}", trial.drift(0.0));
 }
@@ -118,7 +118,7 @@ fn a_wall_square_to_a_robot_measures_its_heading() {
         let (mut trial, theta) = (Trial::new(), Radians::from_degrees(degrees));
         let [before, middle, behind] = ranges;
         trial.drives(0.0, 4.0, 0.0);
-        // After a full circle the heading is no longer known well.
+        // After a full circle, the heading is no longer known precisely.
         for step in 0..36 {
             let theta = Radians::from_degrees(10.0 * f64::from(step) + degrees);
             trial.hears(Pose { theta, ..Pose::ORIGIN }, &[], &SHAPE);

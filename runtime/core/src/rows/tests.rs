@@ -1,4 +1,4 @@
-//! Tests of conditions in table rows, and of the memory of a table-driven plan.
+//! Tests conditions in table rows, and the memory of a table-driven plan.
 
 use std::vec::Vec;
 
@@ -10,7 +10,7 @@ use crate::{
     Output, Plan, Radians, Rows, Texts,
 };
 
-/// The numbers of the interrupts that fire.
+/// Numbers of the interrupts that fire.
 struct Sensed(&'static [u8]);
 
 impl Output for Sensed {}
@@ -93,7 +93,7 @@ fn a_condition_that_is_its_own_operand_holds_nobody_up() {
     for operand in [Condition::Not(0), Condition::Or(0, 1), Condition::And(0, 1), Condition::Rising(0, 0)] {
         let operands: [Condition<Fires>; 1] = [operand];
         let or = Condition::Or(0, 1);
-        // What refers to itself or back is as if it were not there, and so has not fired.
+        // An operand that refers to itself or to an earlier operand is ignored, as if it had not fired.
         assert_eq!(or.fired(&at(&operands, &nothing, &()), 0), matches!(operands[0], Condition::Not(_)));
         assert_eq!(or.cause(&at(&operands, &nothing, &())), 0);
         let mut memories = Vec::new();
@@ -202,7 +202,7 @@ fn each_low_rising_is_noted_once() {
         Condition::Quark(Fires(0)),
         Condition::Rising(4, 9),
         Condition::Quark(Fires(9)),
-        // Nobody's.
+        // Not part of any condition.
         Condition::Rising(5, 11),
         Condition::Quark(Fires(9)),
     ];
@@ -298,7 +298,7 @@ fn what_ends_is_written_down_with_its_cause_and_what_was_inside_is_forgotten() {
         let leave = |plan: &mut Remembers<'_>, cursor: &mut At| plan.leave(cursor, cause, &y, Nanos::ZERO);
         ends_by_either().after([true; WIDTH * LEVELS], leave).1
     };
-    // 0 and 4 are of no label. `Q` ends as well, but nothing of its own has ended it.
+    // Memories 0 and 4 belong to no label. `Q` ends as well, but not by its own condition.
     assert_eq!(memories(Cause::Fired(2), Sensed(&[1])), [0, 1, 2, 4]);
     assert_eq!(memories(Cause::Fired(2), Sensed(&[0, 1])), [0, 1, 4]);
     assert_eq!(memories(Cause::Completed(2), Sensed(&[1])), [0, 1, 4]);
@@ -370,7 +370,7 @@ fn every_part_of_a_condition_is_examined_in_order() {
         Condition::Or(0, 2).examine(&at(&operands, &Sensed(numbers), &()), 0, tell);
         fired
     };
-    // OR, AND, NOT, its quark, RISING, its time, the timer.
+    // In order: OR, AND, NOT and its quark, RISING and its time, and the timer.
     assert_eq!(examined(&[]), [true, false, true, false, false, false, true]);
     assert_eq!(examined(&[0]), [true, false, false, true, false, false, true]);
     let itself: [Condition<Fires>; 1] = [Condition::Or(0, 1)];

@@ -1,4 +1,4 @@
-//! Tests of a cursor: the atom after a scope has ended, and the brackets that restart (docs/src/reference/semantics.md,
+//! Tests a cursor: the atom after a scope has ended, and the brackets that restart (docs/src/reference/semantics.md,
 //! 5.3 and 6).
 
 use std::vec::Vec;
@@ -6,7 +6,7 @@ use std::vec::Vec;
 use crate::fsm::{Atom, Bracket};
 use crate::{Cursor, Fsm, Nanos};
 
-/// `((a)^2, x) b`: the scope `x` holds the loop.
+/// `((a)^2, x) b`: the loop is inside the scope `x`.
 const LOOP_IN_SCOPE: Fsm<'static> = Fsm {
     brackets: &[
         Bracket::scope(0, 0, 1, 0),
@@ -19,7 +19,7 @@ const LOOP_IN_SCOPE: Fsm<'static> = Fsm {
     termination: 4,
 };
 
-/// `(a, x)^2 b`: the loop holds the scope `x`.
+/// `(a, x)^2 b`: the scope `x` is inside the loop.
 const SCOPE_IN_LOOP: Fsm<'static> = Fsm {
     brackets: &[
         Bracket::scope(0, 0, 1, 0),
@@ -52,7 +52,7 @@ fn start(fsm: Fsm<'_>) -> Walk {
     Cursor::start(fsm, [Nanos(77); 3], [77; 2], Nanos(100))
 }
 
-/// Returns at most `most` states of a plan in which one scope at this level ends after another.
+/// Returns at most `most` states that a plan passes through if a scope at this level ends in each of them.
 fn states(fsm: Fsm<'_>, level: u16, most: usize) -> Vec<u64> {
     let mut cursor = start(fsm);
     let mut states = std::vec![cursor.state(fsm)];

@@ -1,4 +1,4 @@
-//! Tests of the result of a turn (docs/src/reference/semantics.md, 5).
+//! Tests the result of a turn (docs/src/reference/semantics.md, 5).
 
 use std::vec::Vec;
 
