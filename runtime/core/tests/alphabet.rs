@@ -1,4 +1,4 @@
-//! An alphabet that `alphabet!` declares from its tables: that of a robot with an interrupt, and two laws of one name.
+//! Tests `alphabet!` with a robot that has one interrupt, and two laws of the same name.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use mdle_runtime::{
