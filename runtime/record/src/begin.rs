@@ -49,8 +49,8 @@ pub struct Constants {
 }
 
 impl Begin {
-    /// Value of [`Begin::beside`] in a record that begins in the middle of a run, so that no replay can repeat its
-    /// turns.
+    /// Value of [`Begin::beside`] in a record that begins in the middle of a run, whose turns therefore cannot be
+    /// replayed.
     pub const MIDDLE: &str = "the run before it";
 
     /// Writes the beginning of a run whose first output is `y`, with the paths that the plan can replay.
@@ -97,7 +97,7 @@ impl Begin {
     }
 }
 
-/// Returns the number of items as it is written to a record.
+/// Converts a number of items to the type in which a record stores it.
 pub(crate) fn count<T>(items: &[T]) -> u32 {
     u32::try_from(items.len()).unwrap_or(u32::MAX)
 }

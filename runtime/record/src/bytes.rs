@@ -26,7 +26,7 @@ pub(crate) fn put_pose(to: &mut Vec<u8>, pose: &Pose) {
     }
 }
 
-/// Writes a text of less than 4 GiB; a longer text is written as an empty one.
+/// Writes a text of less than 4 GiB; a longer text is written as an empty text.
 pub(crate) fn put_text(to: &mut Vec<u8>, text: &str) {
     let (length, text) = u32::try_from(text.len()).map_or((0, ""), |length| (length, text));
     put_u32(to, length);

@@ -1,5 +1,6 @@
-//! Writes and reads the causes of a turn besides the robot's output: values that modules have published, states of
-//! other robots, paths that were recorded, and changes that people and the engine made at the break before the turn.
+//! Writes and reads the changes that influence a turn, besides the robot's output: values that modules have published,
+//! states of other robots, paths that were recorded, and changes that users and the engine made at the break before the
+//! turn.
 
 use mdle_runtime::{Nanos, PeerState, Setpoint, Twist};
 
@@ -30,8 +31,8 @@ pub enum Change {
         /// The value as 64 bits; 0 for a kind that plans do not read.
         bits: u64,
     },
-    /// Name and text of each file of a plan, the plan's own file first. Later changes refer to such lists by number,
-    /// counted from 0 in a record.
+    /// Files of a plan, each with its name and text, the plan's own file first. Later changes refer to these lists by
+    /// number, counted from 0 in a record.
     Files(Vec<(String, String)>),
     /// A plan is ready to replace the current plan.
     Armed {
@@ -65,9 +66,9 @@ pub enum Change {
     Peer {
         /// Name of the robot.
         name: String,
-        /// Number of scopes with a `rendezvous` with this robot that the receiver had entered.
+        /// Number of times that the receiver had entered a scope with a `rendezvous` with this robot.
         rounds: u64,
-        /// The newest state that has arrived; `None` before the first.
+        /// The newest state that has arrived; `None` before the first arrival.
         state: Option<PeerState>,
     },
     /// The path back along a driven path was recorded: from now on it replaces the path of this name.
@@ -202,7 +203,7 @@ fn take(from: &mut Bytes<'_>) -> Option<Change> {
     })
 }
 
-/// Writes the input that a safety rule changed, or its absence.
+/// Writes the input that a safety rule changed, or that there is none.
 pub(crate) fn put_overruled(overruled: Option<&Overruled>, to: &mut Vec<u8>) {
     to.push(u8::from(overruled.is_some()));
     if let Some(Overruled { asked, rule }) = overruled {

@@ -1,5 +1,4 @@
-//! Writes and reads an output exactly to the bit: the pings that are newer than the previous output, and all other
-//! numbers.
+//! Writes and reads an output bit for bit: the pings that are newer than the previous output, and all other numbers.
 
 use mdle_runtime::{
     Compass, Meters, MetersPerSecond, Mount, Nanos, Ping, Pings, Pose, Published, RadiansPerSecond, SONARS, Sensed,
@@ -16,7 +15,7 @@ const UNUSED: u8 = 1;
 /// Tag of any other compass.
 const UNKNOWN: u8 = 2;
 
-/// Writes an output that follows the output `before`.
+/// Writes an output, without the pings that the previous output `before` contains.
 pub(crate) fn put(y: &Sensed, before: Option<&Sensed>, to: &mut Vec<u8>) {
     put_u64(to, y.at.0);
     put_pose(to, &y.odometry);
@@ -57,7 +56,7 @@ pub(crate) fn take_twist(from: &mut Bytes<'_>) -> Option<Twist> {
     Some(Twist { v: MetersPerSecond(from.f64()?), omega: RadiansPerSecond(from.f64()?) })
 }
 
-/// Returns the compass that follows from the output's data and the previous compass.
+/// Computes the compass from the output's data and the previous compass.
 fn computed(y: &Sensed, before: Option<&Sensed>) -> Compass {
     let mut compass = before.map_or_else(Compass::default, |before| before.compass);
     compass.take(&y.pings, y.odometry, &y.shape);
@@ -102,8 +101,8 @@ fn put_ping(ping: &Ping, y: &Sensed, mount: Mount, to: &mut Vec<u8>) {
     }
 }
 
-/// Reads the output that follows the output `before`. Returns `None` if the bytes are not an output, or if the recorded
-/// drift of the heading does not follow from the pings.
+/// Reads an output that was written with the previous output `before`. Returns `None` if the bytes are not an output,
+/// or if the recorded drift of the heading does not follow from the pings.
 pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<Sensed> {
     let mut y = Sensed {
         at: from.nanos()?,

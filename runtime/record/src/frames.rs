@@ -7,7 +7,7 @@ use crate::bytes::{Bytes, put_u32, put_u64};
 use crate::turn::{self, TurnMade, Undecoded};
 use crate::{Begin, Chain, RecordedTurn, Step};
 
-/// Number of bytes before the content of a frame.
+/// Length of a frame's header, in bytes.
 const HEAD: usize = 5;
 
 /// Kind of a frame.
@@ -76,7 +76,7 @@ impl Frames {
         self.put(Tag::End, to);
     }
 
-    /// Appends the checksum over the content and all earlier contents.
+    /// Appends the checksum of the content and all earlier contents.
     fn chained(&mut self) {
         self.chain = self.chain.with(&self.content);
         self.content.extend_from_slice(&self.chain.bytes());

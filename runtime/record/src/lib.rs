@@ -1,4 +1,4 @@
-//! Records of runs: an MCAP file with all data for a replay to the bit, and with channels that viewers can open
+//! Records of runs: an MCAP file with all data for a bit-exact replay, and with channels that viewers can open
 //! (docs/src/reference/interfaces.md, 6.6).
 //!
 //! The thread that drives a robot encodes each turn as a [frame](frames). The thread that writes the file turns frames

@@ -8,7 +8,7 @@ use mcap::{MAGIC, McapError};
 
 /// Maximum size of a part of the file, in bytes: more than the data of a robot in one second.
 const LARGEST: usize = 64_000_000;
-/// Maximum number of bytes that are read at a time, so that a changed length does not request more memory.
+/// Maximum number of bytes that are read at a time, so that a corrupted length does not allocate more memory.
 const STEP: usize = 1 << 18;
 
 /// A part of an MCAP file.
@@ -38,15 +38,15 @@ pub(crate) struct Parts<R> {
     source: R,
     reader: LinearReader,
     chunk: Option<Chunk>,
-    /// Last bytes that were read.
+    /// Last bytes that were read, which show whether the file has its end.
     last: [u8; MAGIC.len()],
     /// Number of consecutive parts that consist of zeros.
     zeros: u32,
-    /// `true` once the end of the file has been read, so that the file was not cut short.
+    /// `true` once the end of the file has been read: the file was not cut short.
     pub(crate) is_whole: bool,
 }
 
-/// A chunk of which parts are being read.
+/// A chunk whose parts are being read.
 #[derive(Debug)]
 struct Chunk {
     data: Vec<u8>,
@@ -92,7 +92,7 @@ impl<R: Read> Parts<R> {
                     }
                     self.reader.notify_read(read);
                 }
-                // A system that lost its power may leave gigabytes of zeros behind what was written.
+                // After a power failure, gigabytes of zeros may follow the written data.
                 Some(Ok(LinearReadEvent::Record { opcode: 0, data: [] })) => {
                     self.zeros += 1;
                     if self.zeros == MOST_ZEROS {
@@ -106,7 +106,7 @@ impl<R: Read> Parts<R> {
                         self.chunk = Some(Chunk::of(data)?);
                     }
                 }
-                // A length that was changed leads over the end.
+                // A changed length points beyond the end of the file.
                 Some(Err(McapError::UnexpectedEof)) | None if !self.is_whole && self.last == *MAGIC => {
                     let why = "nothing leads to its end, so that bytes outside of its turns were changed";
                     return Err(Unreadable::Damaged(why.to_owned()));
@@ -120,10 +120,10 @@ impl<R: Read> Parts<R> {
 }
 
 impl Chunk {
-    /// Number of bytes in a chunk's head before and after the name of its compression.
+    /// Number of bytes in a chunk's header before and after the name of its compression.
     const HEAD: [usize; 2] = [32, 8];
 
-    /// Reads an uncompressed chunk. A chunk whose length differs from the length in its head is refused, because the
+    /// Reads an uncompressed chunk. A chunk whose length differs from the length in its header is refused, because the
     /// library would panic on a shorter one.
     fn of(data: &[u8]) -> Result<Self, Unreadable> {
         let shorter = || Unreadable::Damaged("one of its seconds has another length than it gives".to_owned());
@@ -180,7 +180,7 @@ impl Chunk {
     }
 }
 
-/// Converts an error of the library to the damage of a record, in words without terms of MCAP.
+/// Converts an error of the library to a description of the damage, without terms of MCAP.
 fn damage(error: McapError) -> Unreadable {
     let why = match error {
         McapError::Io(error) => return Unreadable::System(error),

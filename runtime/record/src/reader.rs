@@ -1,4 +1,4 @@
-//! Reads the turns of a record one after the other: memory use does not depend on the record's length.
+//! Reads the turns of a record one at a time, so that memory use does not depend on the record's length.
 
 use std::fmt;
 use std::io::{self, Read};
@@ -51,7 +51,7 @@ impl std::error::Error for ReadError {}
 pub struct Message {
     /// Kind of the message.
     pub kind: MessageKind,
-    /// Content of the message: a JSON object under the schema of the kind's channel.
+    /// Content of the message: a JSON object with the schema of the kind's channel.
     pub json: String,
 }
 
@@ -67,7 +67,7 @@ pub enum MessageKind {
 /// Turns of a record, each with the messages that follow it in the record.
 pub struct TurnsWithMessages<R> {
     records: Records<R>,
-    /// The turn after the last one that was returned; `None` before the first turn was returned, and at the end.
+    /// The next turn, read in advance; `None` before the first turn was returned, and at the end.
     peeked: Option<Result<RecordedTurn, ReadError>>,
 }
 
@@ -78,8 +78,8 @@ impl<R: Read> TurnsWithMessages<R> {
         self.records.is_whole()
     }
 
-    /// Returns the time of the turn after the last one that was returned; `None` before the first turn was returned, at
-    /// the end of the record, and if the rest cannot be read.
+    /// Returns the time of the next turn; `None` before the first turn was returned, at the end of the record, and if
+    /// the rest cannot be read.
     #[must_use]
     pub fn next_time(&self) -> Option<Nanos> {
         self.peeked.as_ref().and_then(|next| next.as_ref().ok()).map(|next| next.t)

@@ -1,5 +1,5 @@
-//! Tests of records in memory: the decoder without its checksums, which detect any changed byte of a file before it is
-//! decoded; the chain of checksums; and files that are cut short.
+//! Tests records in memory: the decoder without the checksums that would detect a changed byte before it is decoded,
+//! the chain of checksums, and files that are cut short.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_runtime::capability::Steering;
@@ -109,7 +109,7 @@ fn a_turn_is_read_as_it_was_written() {
     assert_eq!((read.plan, read.state, read.steps.len()), (2, 5, 1));
 }
 
-/// Changed bytes are refused or decoded as something else, and lengths beyond the end take no memory.
+/// A changed byte is refused or decoded to other data, and a length beyond the end allocates no memory.
 #[test]
 fn any_byte_of_a_turn_may_be_another() {
     let (first, turn) = encoded();
@@ -170,7 +170,7 @@ fn contents(begin: &Begin, turns: u64) -> Vec<Vec<u8>> {
     contents
 }
 
-/// Reads the beginning of a record and its turns; returns the number of turns before the first refused one, and the
+/// Reads the beginning of a record and its turns; returns the number of turns before the first refused turn, and the
 /// reason for the refusal.
 fn read(begin: &[u8], turns: &[&[u8]]) -> (usize, Option<Undecoded>) {
     let mut chained = match Turns::of(begin) {
@@ -273,7 +273,7 @@ fn a_cut_at_any_kilobyte_leaves_all_but_the_last_second() {
     assert!(records.is_whole());
 }
 
-/// A source that fails once it is read.
+/// A source whose read fails.
 struct Unreadable;
 
 impl std::io::Read for Unreadable {

@@ -97,7 +97,7 @@ impl Step {
     }
 }
 
-/// Writes a turn whose output `y` follows the output `before`.
+/// Writes a turn with the output `y`, without the pings that the previous output `before` contains.
 pub(crate) fn put(
     made: TurnMade<'_>,
     (y, before): (&Sensed, Option<&Sensed>),
@@ -130,7 +130,7 @@ pub(crate) fn put(
     }
 }
 
-/// Reads a turn whose output follows the output `before`.
+/// Reads a turn that was written with the previous output `before`; returns `None` if the bytes are malformed.
 pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<RecordedTurn> {
     let (number, t) = (from.u64()?, from.nanos()?);
     let y = exact::take(from, before, constants)?;
@@ -152,7 +152,7 @@ pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Co
     Some(RecordedTurn { number, t, y, sent, applied, plan, state, steps, changes, overruled })
 }
 
-/// Checksum over the beginning and all turns so far, with which a reader finds the first changed turn.
+/// Checksum of the beginning and all turns so far, with which a reader finds the first changed turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Chain(u32);
 

@@ -1,4 +1,4 @@
-//! Channels for viewers: JSON messages under schemas that Foxglove, Lichtblick and PlotJuggler support.
+//! Channels for viewers: JSON messages with schemas that Foxglove, Lichtblick and PlotJuggler support.
 
 use std::fmt::{self, Write as _};
 
@@ -53,7 +53,7 @@ fn time(t: Nanos) -> String {
 
 /// Rounds a number to three decimals: a picture needs no more than millimetres.
 fn short(value: f64) -> Number {
-    // No zero has a sign.
+    // Adding zero turns -0 into 0.
     Number(libm::round(value * 1e3) / 1e3 + 0.0)
 }
 

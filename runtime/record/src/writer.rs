@@ -69,8 +69,8 @@ impl<W: Write> RecordFile<W> {
         Self { pending: Vec::new(), parts: Parts::Unbegun(Some(to)), kept: 0 }
     }
 
-    /// Returns the number of turns in the chunks that have been written: those that can be read if nothing else is
-    /// written.
+    /// Returns the number of turns in the chunks that have been written; these turns can be read even if nothing else
+    /// is written.
     pub fn turns(&self) -> u64 {
         self.kept
     }
@@ -150,7 +150,7 @@ impl<W: Write> Open<W> {
         let channels = Channels::add(&mut writer).map_err(unwritten)?;
         let mut open = Self { writer, turns, channels, sequence: 0, made: 0, chunk: Nanos::ZERO, text: String::new() };
         open.message(open.channels.begin, Nanos::ZERO, content)?;
-        // A run that is killed at once has a record that can be read.
+        // Flushed at once, so that a run that is killed early has a record that can be read.
         open.writer.flush().map_err(unwritten)?;
         Ok(open)
     }
@@ -236,7 +236,7 @@ fn invalid(sentence: &str) -> io::Error {
     io::Error::new(io::ErrorKind::InvalidData, sentence)
 }
 
-/// Returns the system's error because of which the record could not be written.
+/// Returns the system's error that prevented the record from being written.
 fn unwritten(error: mcap::McapError) -> io::Error {
     if let mcap::McapError::Io(error) = error { error } else { io::Error::other(error.to_string()) }
 }
