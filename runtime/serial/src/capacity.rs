@@ -14,7 +14,7 @@ pub fn time_of(bytes: usize, speed: u32) -> Duration {
 /// Checks that a turn of `period` is long enough for its transmission, which needs `takes`.
 ///
 /// # Errors
-/// Returns a sentence for the operator if the period is too short.
+/// Returns a message for the operator if the period is too short.
 pub fn carries(period: Duration, takes: Duration) -> Result<(), String> {
     if takes <= period {
         return Ok(());

@@ -14,8 +14,8 @@ pub enum Clock {
     Stepped(Duration),
 }
 
-/// Factor of timeouts in lockstep: an answer then takes as long as the robot's computer needs, and the robot stands
-/// still meanwhile.
+/// Factor by which timeouts are longer in lockstep, where an answer takes as long as the robot's computer needs and the
+/// robot stands still meanwhile.
 const LONGER: u32 = 10;
 
 impl Clock {
@@ -59,7 +59,7 @@ impl Clock {
 #[derive(Debug)]
 pub struct Times {
     clock: Clock,
-    /// Time of the first output, by the computer's clock; `None` before it.
+    /// Time of the first output, by the computer's clock; `None` before the first output.
     first: Option<Instant>,
     /// Number of outputs so far.
     outputs: u64,

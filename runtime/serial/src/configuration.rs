@@ -1,5 +1,5 @@
-//! The configuration of a robot as one table: [`configuration!`](crate::configuration!) turns each line into a field,
-//! with its reader, its check and its line of `--print-config`.
+//! The configuration of a robot as one table: from each line, [`configuration!`](crate::configuration!) generates a
+//! field, its reader, its check and its line of `--print-config`.
 
 use std::fmt;
 use std::path::Path;
@@ -11,7 +11,7 @@ pub trait Configuration: Sized {
     /// Returns the values of the configuration file and of `device`, and defaults for all other values.
     ///
     /// # Errors
-    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The sentence gives the
+    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The message gives the
     /// place and reason.
     fn read(file: Option<&Path>, device: Option<&str>) -> Result<(Self, Settings), String>;
 }
@@ -44,7 +44,7 @@ impl<C> fmt::Display for Configured<C> {
 /// Declares a configuration, with one line for each key: `name: type = default, in range, "unit" "help", confidence;`.
 ///
 /// Every configuration begins with a `device` and ends with the gains with which laws steer. The type has a function
-/// `check`, which reports values that are valid each by itself but not together.
+/// `check`, which reports values that are valid individually but not together.
 #[macro_export]
 macro_rules! configuration {
     (

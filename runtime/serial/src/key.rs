@@ -28,7 +28,7 @@ impl Key {
         Self { name, unit, help, is_verified: true, range: None }
     }
 
-    /// Returns `true` if the range of the key, if it has one, contains `value`.
+    /// Returns `true` if the key has no range, or if its range contains `value`.
     fn has(&self, value: f64) -> bool {
         self.range.is_none_or(|(least, most)| (least..=most).contains(&value))
     }
@@ -51,17 +51,17 @@ pub trait Setting: Sized {
     /// Type of the value in a file, and of its default.
     type Written: DeserializeOwned + fmt::Debug;
 
-    /// Returns what the value of `key` in a file has to be, as the end of a sentence.
+    /// Describes the value that `key` must have in a file, as the end of a sentence.
     fn expected(key: &Key) -> String;
 
     /// Converts a written value to a value of this type.
     ///
     /// # Errors
-    /// Returns a sentence with the reason if `key` cannot have this value.
+    /// Returns a message with the reason if `key` cannot have this value.
     fn of(key: &Key, written: Self::Written) -> Result<Self, String>;
 }
 
-/// Returns the end of a sentence that expects `what` within the range of `key`, with its unit.
+/// Describes an expected `what` within the range of `key`, with its unit, as the end of a sentence.
 fn ranged(what: &str, key: &Key) -> String {
     let range = key.range.map(|(least, most)| format!(" from {least} to {most}")).unwrap_or_default();
     let unit = if key.unit.is_empty() { String::new() } else { format!(" {}", key.unit) };
@@ -105,7 +105,7 @@ written_as_it_is! {
 /// Returns the value in `choices` whose name is `written`.
 ///
 /// # Errors
-/// Returns a sentence with all names, and the most similar one, if no choice has this name.
+/// Returns a message with all names, and the most similar one, if no choice has this name.
 pub fn one_of<T: Copy>(key: &Key, written: &str, choices: &[(&str, T)]) -> Result<T, String> {
     choices.iter().find(|(name, _)| *name == written).map(|(_, choice)| *choice).ok_or_else(|| {
         let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
@@ -114,7 +114,7 @@ pub fn one_of<T: Copy>(key: &Key, written: &str, choices: &[(&str, T)]) -> Resul
     })
 }
 
-/// Returns a list of words in quotes, of which a value has to be one.
+/// Returns a list of the allowed words, in quotes.
 #[must_use]
 pub fn quoted(words: &[&str]) -> String {
     let words: Vec<_> = words.iter().map(|word| format!("{word:?}")).collect();
@@ -124,7 +124,7 @@ pub fn quoted(words: &[&str]) -> String {
 /// Checks that `value` is between `least` and `most`, ends included.
 ///
 /// # Errors
-/// Returns a sentence if the value is out of range.
+/// Returns a message if the value is out of range.
 pub fn within(name: &str, value: f64, least: f64, most: f64) -> Result<(), String> {
     if (least..=most).contains(&value) {
         Ok(())

@@ -14,7 +14,7 @@ use rustix::fs::{FlockOperation, OFlags};
 use rustix::io::Errno;
 use rustix::termios::{self, OptionalActions};
 
-/// Maximum time in which a robot accepts a connection.
+/// Timeout for connecting to a robot.
 const CONNECT: Duration = Duration::from_secs(1);
 
 /// An open line to a robot.
@@ -32,7 +32,7 @@ pub enum LineFault {
     Busy(String),
     /// This device is not a serial port.
     NotSerial(String),
-    /// No bytes arrived, or none could be sent, in time.
+    /// Before the deadline, no bytes arrived or none could be sent.
     Silent,
     /// The line was closed at the other end.
     Closed,
@@ -49,7 +49,7 @@ impl LineFault {
         }
     }
 
-    /// Writes the sentence about this fault for the operator; `robot` names the robot, as in `the Scout`.
+    /// Writes the message about this fault for the operator; `robot` names the robot, as in `the Scout`.
     ///
     /// # Errors
     /// Fails if the formatter failed.
@@ -139,7 +139,7 @@ impl Line {
 /// Opens a serial port in raw mode, and locks it against other programs that request a lock.
 fn serial(path: &Path, speed: u32) -> Result<OwnedFd, LineFault> {
     let device = path.display().to_string();
-    // Without waiting for a carrier, and without making it this program's terminal.
+    // Does not wait for a carrier, and does not make the port this program's terminal.
     let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
     let file = OpenOptions::new().read(true).write(true).custom_flags(flags).open(path);
     let file: File = file.map_err(|error| {
@@ -149,7 +149,7 @@ fn serial(path: &Path, speed: u32) -> Result<OwnedFd, LineFault> {
     if !termios::isatty(&file) {
         return Err(LineFault::NotSerial(device));
     }
-    // A file system without locks cannot say who else is there.
+    // Other errors are ignored, because a file system may not support locks.
     if rustix::fs::flock(&file, FlockOperation::NonBlockingLockExclusive) == Err(Errno::WOULDBLOCK) {
         return Err(LineFault::Busy(device));
     }
@@ -171,7 +171,7 @@ fn connect(address: &str) -> Result<OwnedFd, LineFault> {
     })?;
     let refused = |error: io::Error| LineFault::Open(name.clone(), error.to_string());
     let stream = TcpStream::connect_timeout(&address, CONNECT).map_err(refused)?;
-    // A command must not wait until there are more.
+    // A command must be sent at once, and not wait for later commands.
     stream.set_nodelay(true).map_err(refused)?;
     stream.set_nonblocking(true).map_err(refused)?;
     Ok(stream.into())

@@ -13,7 +13,7 @@ impl Moment {
     #[must_use]
     pub fn now() -> Self {
         let time = clock_gettime(ClockId::Boottime);
-        // Since the computer was switched on, so neither is negative.
+        // Counted from the start of the computer, so neither number is negative.
         Self(Duration::new(u64::try_from(time.tv_sec).unwrap_or(0), u32::try_from(time.tv_nsec).unwrap_or(0)))
     }
 

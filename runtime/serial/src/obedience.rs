@@ -91,7 +91,7 @@ impl Obedience {
     pub fn time_to_stand(&self, least: Duration) -> Duration {
         let time = |band: &Band| band.fastest().max(self.measured) / band.brakes;
         let seconds = time(&self.forward).max(if self.turning.fastest() > 0.0 { time(&self.turning) } else { 0.0 });
-        // A number that is none becomes the longest time.
+        // NaN becomes the longest time.
         let braking = Duration::try_from_secs_f64(seconds).unwrap_or(LONGEST);
         (braking + REACTION).clamp(least.min(LONGEST), LONGEST)
     }
@@ -137,14 +137,14 @@ mod tests {
         for held in [NONE, [0.0, 0.2], [0.2, 0.0], [0.1, 0.1], [0.24, -0.05]] {
             assert_eq!(broken(&[(AHEAD, held); 50]), None, "{held:?}");
         }
-        // Against a wall both wheels turn against each other.
+        // Against a wall, the wheels turn in opposite directions.
         assert_eq!(broken(&[([0.475, 0.025], [0.225, -0.225]); 50]), None);
     }
 
     #[test]
     fn a_robot_that_goes_on_disobeys() {
         let goes_on = |command| [[(AHEAD, AHEAD); 10], [(command, AHEAD); 10], [(command, AHEAD); 10]].concat();
-        // In the third turn it is faster than one that brakes may be, and half a second later still.
+        // From the third turn of braking on, the robot is too fast, and it is reported half a second later.
         for command in [NONE, [-0.2, -0.2], [0.1, 0.1]] {
             assert_eq!(broken(&goes_on(command)), Some(17), "{command:?}");
         }
@@ -158,7 +158,7 @@ mod tests {
         let braking = (0..40).map(|turn| (NONE, [0.5 - 0.05 * f64::from(turn); 2].map(|speed: f64| speed.max(0.0))));
         let turns: Vec<_> = [([0.5; 2], [0.5; 2]); 10].into_iter().chain(braking).collect();
         assert_eq!(broken(&turns), None);
-        // A jerk is shorter than the limit.
+        // A jerk that is shorter than the limit is tolerated.
         let jerk = [[(NONE, NONE); 5], [(NONE, AHEAD); 5], [(NONE, NONE); 5], [(NONE, AHEAD); 5]].concat();
         assert_eq!(broken(&jerk), None);
     }

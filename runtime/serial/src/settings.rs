@@ -35,7 +35,7 @@ impl Settings {
     /// Reads the configuration file, if there is one.
     ///
     /// # Errors
-    /// Fails if the file cannot be read or is not TOML. The sentence gives the place and reason.
+    /// Fails if the file cannot be read or is not TOML. The message gives the place and reason.
     pub fn read(file: Option<&Path>) -> Result<Self, String> {
         let Some(path) = file else { return Ok(Self::default()) };
         let name = path.display().to_string();
@@ -47,7 +47,8 @@ impl Settings {
     /// Checks that every key of the file has been asked for.
     ///
     /// # Errors
-    /// Returns a sentence with the file's name, the unknown key and the most similar key.
+    /// Returns a message with the file's name, the unknown key and the most similar key, if a key has not been asked
+    /// for.
     pub fn check(&self) -> Result<(), String> {
         let Some(unknown) = self.written.keys().next() else { return Ok(()) };
         let known: Vec<_> = self.entries.iter().map(|entry| entry.key.in_a_file()).collect();
@@ -67,7 +68,7 @@ impl Settings {
     /// Returns the value of `key` in the file, or the default.
     ///
     /// # Errors
-    /// Returns a sentence with the file's name and the reason if the key cannot have this value.
+    /// Returns a message with the file's name and the reason if the key cannot have this value.
     pub fn value<T: Setting>(&mut self, key: Key, default: T::Written) -> Result<T, String> {
         let written = self.taken::<T>(&key)?;
         let written = self.chosen(key, written, default);
@@ -77,7 +78,7 @@ impl Settings {
     /// Returns the device on the command line; if there is none, the device in the file, or else the first serial port.
     ///
     /// # Errors
-    /// Returns a sentence with the file's name if the device in the file is not a text.
+    /// Returns a message with the file's name if the device in the file is not a text.
     pub fn device(&mut self, given: Option<&str>) -> Result<String, String> {
         let key = Key::of("device", "", "the serial port, or tcp:ADDRESS:PORT");
         let written = self.taken::<String>(&key)?;
@@ -87,7 +88,7 @@ impl Settings {
         })
     }
 
-    /// Takes the value of `key` out of those of the file.
+    /// Removes and returns the value of `key` in the file; `None` if the file does not have the key.
     fn taken<T: Setting>(&mut self, key: &Key) -> Result<Option<T::Written>, String> {
         let Some(value) = self.written.remove(&key.in_a_file()) else { return Ok(None) };
         let shown = shown(&value);
@@ -101,7 +102,7 @@ impl Settings {
     /// With a gain below 0.1 a robot hardly turns; with a gain above 10 it oscillates.
     ///
     /// # Errors
-    /// Returns a sentence about a gain that is too small or too large.
+    /// Returns a message about a gain that is too small or too large.
     pub fn steering(&mut self) -> Result<Steering, String> {
         let usual = Steering::USUAL;
         let gain = |name, help| Key { range: Some((0.1, 10.0)), ..Key::of(name, "rad/s", help) };

@@ -1,13 +1,13 @@
-//! Values and lines of a configuration file in messages: plain words, and short whatever the file contains.
+//! Formats values and lines of a configuration file for messages: in plain words, and with a limited length.
 
 use toml::Value;
 
 /// Maximum number of letters of a text in a message.
 const LETTERS: usize = 60;
-/// Numbers of this size, or closer to zero than its inverse, are written with an exponent.
+/// Numbers above this size, or closer to zero than its inverse, are written with an exponent.
 const LARGE: f64 = 1e15;
 
-/// Returns `text`, cut off after a number of letters that a message can have.
+/// Returns `text`, truncated to the maximum length in a message.
 #[must_use]
 pub fn shortened(text: &str) -> String {
     match text.char_indices().nth(LETTERS) {
@@ -16,19 +16,19 @@ pub fn shortened(text: &str) -> String {
     }
 }
 
-/// Returns a number as a message writes it.
+/// Formats a number for a message.
 pub(crate) fn number(value: f64) -> String {
     let size = value.abs();
     let is_plain = !value.is_finite() || size == 0.0 || (LARGE.recip()..=LARGE).contains(&size);
     if is_plain { value.to_string() } else { format!("{value:e}") }
 }
 
-/// Returns a value of a file as a message writes it.
+/// Formats a value of a file for a message.
 pub(crate) fn shown(value: &Value) -> String {
     match value {
         Value::String(text) => shortened(&format!("{text:?}")),
         Value::Integer(value) => value.to_string(),
-        // A float is no whole number, whatever its value.
+        // A float keeps its decimal point, even if its value is whole.
         Value::Float(value) if value.fract() == 0.0 && value.abs() <= LARGE => format!("{value:.1}"),
         Value::Float(value) => number(*value),
         Value::Boolean(value) => value.to_string(),
@@ -44,7 +44,7 @@ pub(crate) fn shown(value: &Value) -> String {
     }
 }
 
-/// Returns the message about `text` that is not TOML: the line, what is wrong with it, and its beginning.
+/// Returns the message about `text` that is not TOML: the line's number, the error, and the beginning of the line.
 pub(crate) fn syntax_error(text: &str, error: &toml::de::Error) -> String {
     let too_large = ["number overflowed", "value was too large", "value was too small", "as i128", "as u128"];
     let reason = match error.message() {

@@ -48,7 +48,7 @@ pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal
     /// Checks that the watchdog does not stop the robot between two commands, if turns follow the computer's clock.
     ///
     /// # Errors
-    /// Returns a sentence with the watchdog's time limit.
+    /// Returns a message with the watchdog's timeout if turns are too long for it.
     fn outlasts(config: &Self::Config, period: Duration) -> Result<(), String>;
 }
 
