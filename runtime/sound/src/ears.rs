@@ -12,7 +12,7 @@ use crate::{RATE, SPEED, WINDOW};
 const LENGTH: usize = 16_384;
 /// Maximum length of a room's response, in samples.
 const LONGEST: usize = LENGTH - WINDOW;
-/// Number of the random stream of the microphones' noise. The streams from `SOURCES` on are those of the sources.
+/// Number of the random stream for the microphones' noise. The streams of the sources begin at `SOURCES`.
 const MICROPHONES: u64 = 0;
 const SOURCES: u64 = 1;
 
@@ -34,8 +34,8 @@ pub struct Ears {
     chance: RandomStream,
     /// Loudness of the microphones' own noise.
     noise: f64,
-    /// Sound that has left its source and is still under way: the left ear as the real part, the right as the
-    /// imaginary one.
+    /// Sound that has left its source and has not yet been heard: the left ear as the real part, the right as the
+    /// imaginary part.
     under_way: Vec<Complex32>,
 }
 
@@ -78,10 +78,11 @@ impl Ears {
         }
     }
 
-    /// Adds the next `stretch` samples of source `number`, as both ears will hear them, to the sound that is under way.
+    /// Adds the next `stretch` samples of source `number`, as both ears will hear them, to the sound that has not yet
+    /// been heard.
     fn emit(&mut self, number: usize, here: &EarPose, stretch: usize) {
         let Some((source, signal)) = self.sources.get_mut(number) else { return };
-        // At 2 m half of the pressure at 1 m.
+        // The level is given at 2 m, where the pressure is half of that at 1 m.
         let loudness = 2.0 * libm::pow(10.0, source.level / 20.0);
         let mut emitted = vec![Complex32::default(); LENGTH];
         for value in emitted.iter_mut().take(stretch) {
@@ -92,7 +93,7 @@ impl Ears {
         transform(&mut emitted);
         transform(&mut response);
         let product = emitted.iter().zip(&response).map(|(emitted, response)| emitted * response);
-        // The inverse transform, by the transform of the conjugate.
+        // The inverse transform, computed by transforming the conjugate.
         let mut heard: Vec<_> = product.map(|bin| bin.conj()).collect();
         transform(&mut heard);
         for (under_way, heard) in self.under_way.iter_mut().zip(&heard) {
@@ -106,7 +107,7 @@ impl Ears {
         let mut response = vec![Complex32::default(); LENGTH];
         let (sin, cos) = libm::sincos(here.heading);
         self.room.images(source, here.at, |image| {
-            // Both ears hear an image at the delay of the centre: what rounding does to it, it does to both.
+            // The delay at the centre of the head is rounded, so that the rounding error is the same for both ears.
             let late = libm::round(image.distance / SPEED * f64::from(RATE)) as usize;
             let Some(first) = late.checked_sub(LATE.min(late)).filter(|first| first + TAPS <= LONGEST) else { return };
             let [x, y, _] = image.from;
@@ -122,7 +123,7 @@ impl Ears {
 }
 
 /// Computes the Fourier transform in place.
-// Inlined three times into `emit`, its nested loops take LLVM minutes to optimize.
+// If it were inlined three times into `emit`, LLVM would take minutes to optimize its nested loops.
 #[inline(never)]
 fn transform(values: &mut [Complex32]) {
     if let Ok(values) = values.try_into() {

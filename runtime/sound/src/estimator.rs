@@ -83,7 +83,7 @@ impl Estimator {
         let best = (0..correlation.len()).fold(0, greater);
         let at = |place: Option<usize>| place.and_then(|place| correlation.get(place)).copied();
         let peak = at(Some(best))?;
-        // A parabola through the greatest value and its neighbours.
+        // Fits a parabola through the greatest value and its neighbours.
         let vertex = match (at(best.checked_sub(1)), at(best.checked_add(1))) {
             (Some(before), Some(after)) if before + after < 2.0 * peak => {
                 0.5 * (before - after) / (before - 2.0 * peak + after)
@@ -116,7 +116,7 @@ impl Estimator {
                 even += value.re * turn.re;
                 odd += value.im * turn.im;
             }
-            // A lead of the left ear turns the phase of the product up.
+            // If the left ear leads, the phase of the product increases with frequency.
             for (place, value) in [(self.most + step, even + odd), (self.most - step, even - odd)] {
                 if let Some(there) = both.get_mut(place) {
                     *there = value;

@@ -1,8 +1,8 @@
-//! Drops uncertain estimates, as long as there are better ones.
+//! Rejects uncertain estimates while better ones are available.
 
 /// Limit of the ratio after an estimate was kept.
 const HIGHEST: f64 = 7.0;
-/// Minimum limit of the ratio, after no estimate was kept for some time.
+/// Minimum limit of the ratio, which is reached when no estimate is kept for some time.
 const LOWEST: f64 = 3.5;
 /// Decrease of the limit per second in which no estimate is kept.
 const FALL: f64 = 1.4;

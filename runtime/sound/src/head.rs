@@ -69,7 +69,7 @@ fn response(waves: &[Series], turns: &[Complex64], cosine: f64) -> [f32; TAPS] {
     let at = |place: usize| turns.get(place % PERIOD).copied().unwrap_or_default();
     let mut spectrum = vec![Complex64::new(1.0, 0.0)];
     for (bin, wave) in (1..).zip(waves) {
-        // Later by `LATE` samples.
+        // Delays the response by `LATE` samples.
         spectrum.push(wave.transfer(cosine) * low_pass(frequency(bin)) * at(bin * LATE).conj());
     }
     let mut response = [0.0; TAPS];
@@ -93,7 +93,7 @@ impl Series {
     /// Returns the series for this product of wave number and radius, above 0.
     fn new(ka: f64) -> Self {
         let (sin, cos) = libm::sincos(ka);
-        // Spherical Hankel functions of the first kind, of orders 0 and 1, and from these upwards.
+        // Spherical Hankel functions of the first kind, of orders 0 and 1; the loop computes the higher orders.
         let mut before = Complex64::new(sin / ka, -cos / ka);
         let mut here = Complex64::new(sin / (ka * ka) - cos / ka, -cos / (ka * ka) - sin / ka);
         let mut factors = vec![factor(0, -here, ka)];
@@ -132,7 +132,7 @@ fn factor(order: usize, slope: Complex64, ka: f64) -> Complex64 {
         2 => Complex64::new(0.0, -1.0),
         _ => Complex64::new(-1.0, 0.0),
     };
-    // The series is for waves exp(-iωt), transforms are for exp(+iωt).
+    // The conjugate is taken because the series uses waves exp(-iωt), and transforms use exp(+iωt).
     (power * (2.0 * order as f64 + 1.0) / (slope * ka * ka)).conj()
 }
 
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
 
     /// Returns the ratio of the delay between two microphones at ±90° to the delay by equation 7. The delay is measured
-    /// by the phases in a band, which have equal weights.
+    /// from the phases in a frequency band, with equal weights.
     fn over_equation_7(radius: f64, (from, to): (f64, f64), bearing: f64) -> f64 {
         let sin = libm::sin(bearing);
         let [left, right] = [sin, -sin];

@@ -1,4 +1,4 @@
-//! A histogram of bearings in the axes of odometry, in which the true direction of a source prevails over the direction
+//! A histogram of bearings in odometry coordinates, in which the true direction of a source prevails over the direction
 //! mirrored at the axis of the ears.
 
 use std::f64::consts::{PI, TAU};

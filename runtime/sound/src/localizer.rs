@@ -2,13 +2,13 @@
 
 use crate::{Estimator, Histogram, RatioGate};
 
-/// Estimates of the bearing of a source over time, in the axes of odometry.
+/// Estimates of the bearing of a source over time, in odometry coordinates.
 #[derive(Debug, Clone)]
 pub struct Localizer {
     estimator: Estimator,
     gate: RatioGate,
     histogram: Histogram,
-    /// Time since an estimate was last kept, in seconds; `None` before the first one.
+    /// Time since an estimate was last kept, in seconds; `None` before the first estimate.
     silent: Option<f64>,
 }
 
@@ -36,7 +36,7 @@ impl Localizer {
     }
 
     /// Returns the most probable bearing, in radians, and the time since an estimate was last kept, in seconds; `None`
-    /// before the first one.
+    /// before the first estimate.
     #[must_use]
     pub fn bearing(&self) -> Option<(f64, f64)> {
         self.silent.map(|silent| (self.histogram.bearing(), silent))

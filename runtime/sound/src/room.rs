@@ -147,7 +147,7 @@ mod tests {
     fn reflections_of_the_reverberation_time_take_60_db() {
         let t60 = 0.34;
         let room = SoundRoom::new((0.0, 0.0), (7.0, 6.0), t60);
-        // A mean free path is four times the volume over the surface.
+        // The mean free path is four times the volume divided by the surface.
         let surface = 2.0 * (42.0 + (7.0 + 6.0) * HEIGHT);
         let reflections = SPEED * t60 * surface / (4.0 * 42.0 * HEIGHT);
         let fall = -20.0 * reflections * libm::log10(room.reflects);

@@ -107,7 +107,7 @@ impl Speech {
         // A parabola over the syllable, and silence after it.
         let part = since / length;
         let envelope = if part < 1.0 { 4.0 * part * (1.0 - part) } else { 0.0 };
-        // Falls by 6 dB an octave from 500 Hz on: 2π · 500 / 44100.
+        // A low-pass that falls by 6 dB an octave from 500 Hz on: 2π · 500 / 44100.
         self.low += 0.0712 * (excited * envelope - self.low);
         self.low
     }

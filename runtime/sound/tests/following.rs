@@ -5,14 +5,14 @@
 
 use mdle_sound::{EarPose, Ears, Localizer, RADIUS, SoundKind, SoundRoom, SoundSource, SphericalHead, WINDOW};
 
-/// Seconds of a turn, and the number of turns after which a robot has not arrived: a minute.
+/// Duration of a turn, in seconds. A robot that has not arrived after `TURNS` turns, which are a minute, has failed.
 const TURN: f64 = 0.1;
 const TURNS: u32 = 600;
 /// Distance from the source at which the robot has arrived, in metres.
 const ARRIVED: f64 = 0.8;
 /// Place of the source.
 const SOURCE: (f64, f64) = (5.5, 4.2);
-/// First random seed of these tests. No parameter was chosen by means of these seeds.
+/// First random seed of these tests. No parameter was tuned with these seeds.
 const FIRST: u64 = 9_800_000;
 
 /// Drives towards the estimated bearing at up to 20 cm/s, in a room without obstacles. Returns the seconds until
@@ -64,7 +64,7 @@ fn a_robot_reaches_what_it_hears() {
         let right = runs.iter().map(|(_, right)| right).sum::<f64>() / runs.len() as f64;
         let (all, arrived, median, slowest) = (runs.len(), times.len(), times.get(times.len() / 2), times.last());
         println!("{kind:?}: {arrived} of {all}, {median:?}, {slowest:?} s, right {:.0} %", 100.0 * right);
-        // 48 of 50.
+        // At least 48 of 50 runs must arrive.
         assert!(arrived * 50 >= all * 48 && right > 0.8, "{kind:?}: {arrived} of {all}, bearing right {right}");
     }
 }
