@@ -14,16 +14,16 @@ use zenoh::{Config, Session, Wait as _};
 use crate::subscriptions::subscribe;
 use crate::topics;
 
-/// Time between two attempts to connect.
+/// Interval between two attempts to connect.
 const AGAIN: Duration = Duration::from_millis(200);
-/// Maximum time for an attempt to connect, in milliseconds.
+/// Timeout for an attempt to connect, in milliseconds.
 const OPENS: u64 = 2000;
 /// Time without data from this robot after which the router considers it disconnected, in milliseconds.
 const LEASE: u64 = 2000;
 /// Minimum time between two published states. Only the newest state matters, and a receiver accepts at most 2000 states
 /// per second.
 const SPACING: Duration = Duration::from_millis(1);
-/// Time between two checks of the connection.
+/// Interval at which the connection is checked.
 const LOOK: Duration = Duration::from_millis(100);
 
 /// Data of the thread that keeps the session.
@@ -58,7 +58,7 @@ impl Carrier {
     pub(crate) fn carry(mut self) {
         while !self.endpoint.is_over() {
             let begun = Instant::now();
-            // The session connects again by itself; only a failure of it leads to a new one.
+            // A session reconnects by itself; a new session is opened only after a session has failed.
             self.is_up = false;
             if let Err(failure) = self.session().and_then(|session| self.publish(&session)) {
                 self.outbox.close();
@@ -94,7 +94,7 @@ impl Carrier {
             ("scouting/gossip/enabled", "false".to_owned()),
             ("transport/unicast/open_timeout", OPENS.to_string()),
             ("transport/link/tx/lease", LEASE.to_string()),
-            // A frame with its key; what is longer is dropped unread.
+            // Space for a frame with its key; longer messages are dropped unread.
             ("transport/link/rx/max_message_size", (LONGEST_LETTER + 1024).to_string()),
         ] {
             config.insert_json5(key, &value)?;
@@ -110,7 +110,8 @@ impl Carrier {
         let states = self.states(session)?;
         let (mut last, mut looked) = (None::<Draft>, None::<Instant>);
         while !self.endpoint.is_over() {
-            // A letter is taken only from a robot whose state has arrived: the last one goes first.
+            // A receiver accepts letters only from a robot whose state has arrived, so the last state is sent before
+            // any letter.
             last = self.outbox.next().or(last);
             self.outbox.late(Instant::now()).iter().for_each(|letter| self.endpoint.is_late(letter));
             if looked.is_none_or(|at| at.elapsed() >= LOOK) {
@@ -147,7 +148,7 @@ impl Carrier {
             self.outbox.close();
             self.is_down("it has closed the connection");
         } else if !was_up {
-            // What was sent before may have got lost.
+            // Messages that were sent before may have been lost.
             self.outbox.open();
             if std::mem::take(&mut self.is_known_as_down) {
                 self.endpoint.say(format!("state link: connected to the router at {} again", self.router));

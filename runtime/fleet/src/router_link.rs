@@ -72,7 +72,7 @@ impl Link for RouterLink {
 
 impl Drop for RouterLink {
     fn drop(&mut self) {
-        // The thread looks at it several times a second; nobody waits for it.
+        // The thread checks for the end several times a second; the drop does not wait for it.
         self.endpoint.end();
         self.outbox.wake();
     }

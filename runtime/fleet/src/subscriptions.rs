@@ -9,7 +9,7 @@ use zenoh::{Session, Wait as _};
 
 use crate::topics;
 
-/// Maximum number of reasons for refused messages that are reported for one robot.
+/// Maximum number of reasons for refusals that are reported for one robot.
 const REASONS: usize = 16;
 
 /// Subscribes to the frames for the robot of this name, until the session ends.

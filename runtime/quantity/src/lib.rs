@@ -1,5 +1,5 @@
-//! Quantities as people write and read them: in the values of options, a number and its unit as in a plan, or a number
-//! alone; and measured values in the words of a plan. Also similar names for unknown ones.
+//! Reads and formats quantities for people: the values of options, which are a number with a unit as in a plan or a
+//! number alone, and measured values in the words of a plan. Also suggests similar names for unknown ones.
 
 mod measured;
 mod near;
@@ -32,7 +32,8 @@ pub enum Quantity {
     Frequency,
 }
 
-/// A unit: its name, and the factor and the divisor that convert a number of it into the unit of its [`Quantity`].
+/// A unit: its name, and the factor and the divisor that convert a number with this unit to the unit of its
+/// [`Quantity`].
 type Unit = (&'static str, f64, f64);
 
 impl Quantity {
@@ -51,7 +52,7 @@ impl Quantity {
     /// the unit of the variant.
     ///
     /// # Errors
-    /// Fails with a sentence that says what to type instead if the text is not a number with a unit of this kind.
+    /// Fails if the text is not a number with a unit of this kind; the message says what to type instead.
     pub fn read(self, text: &str, bare: &str) -> Result<f64, String> {
         let is_unit = |letter: char| !letter.is_ascii() || letter.is_ascii_alphabetic() && !matches!(letter, 'e' | 'E');
         let (digits, unit) = text.split_at(text.find(is_unit).unwrap_or(text.len()));
@@ -66,7 +67,7 @@ impl Quantity {
     /// Reads a time as [`Quantity::read`] does.
     ///
     /// # Errors
-    /// Fails with a sentence that says what to type instead if the text is not a time from `least` to `most`.
+    /// Fails if the text is not a time from `least` to `most`; the message says what to type instead.
     pub fn duration(text: &str, bare: &str, least: Duration, most: Duration) -> Result<Duration, String> {
         let read = Duration::try_from_secs_f64(Self::Time.read(text, bare)?).ok();
         read.filter(|duration| (least..=most).contains(duration))
@@ -124,7 +125,7 @@ impl Quantity {
         let units = self.units().iter().map(|unit| unit.0).collect::<Vec<_>>().join(", ");
         let expected = format!("expected {} in {units}, or a number in {bare}", self.words());
         match Self::ALL.into_iter().find(|kind| kind.units().iter().any(|known| known.0 == unit)) {
-            // Minutes are often written so.
+            // Minutes are often written with this unit.
             Some(Self::Length) if self == Self::Time && unit == "m" => {
                 format!("`{text}` is a length: {expected}; did you mean `{digits}min`?")
             }

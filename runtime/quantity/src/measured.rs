@@ -14,8 +14,8 @@ const DECIMALS: usize = 2;
 const DECIMALS_MOST: usize = 9;
 
 /// Returns the text of a transition's cause, with the values of the operands that have fired: `r1 = 0.38 m < 40cm
-/// (wall.mdle:7)`. `operands` has the number of each of them in the interrupt of the scope that ended, and its values.
-/// Returns `None` for a plan without source text.
+/// (wall.mdle:7)`. `operands` contains, for each operand that has fired, its number in the interrupt of the scope that
+/// ended, and its values. Returns `None` for a plan without source text.
 #[must_use]
 pub fn cause_text(source: &dyn Words, transition: &Transition, operands: &[(u32, Measured)]) -> Option<String> {
     let Transition { scope, cause, .. } = *transition;

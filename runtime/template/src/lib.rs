@@ -21,7 +21,7 @@ impl WayBack {
 }
 
 impl Module<Sensed> for WayBack {
-    /// Makes a turn: everything here is in metres, seconds and radians.
+    /// Makes a turn. All values are in metres, seconds and radians.
     fn turn(&mut self, turn: &mut Turn<'_, Sensed>) -> Result<(), Fault> {
         let here = turn.y.odometry;
         let start = *self.start.get_or_insert(here);

@@ -1,4 +1,4 @@
-//! A plan that reads the module runs in the simulator.
+//! Tests that a plan that reads the module runs in the simulator.
 
 use std::process::Command;
 
