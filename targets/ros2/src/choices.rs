@@ -132,6 +132,8 @@ pub struct RangeSensors(pub Vec<RangeSensor>);
 
 /// Maximum number of range sensors in a configuration.
 const MOST: usize = 64;
+/// Key of the range sensors, whose value is a list of tables.
+pub(crate) const RANGES: &str = "ranges";
 
 impl Setting for RangeSensors {
     type Written = Vec<RangeSensor>;

@@ -26,7 +26,7 @@ pub trait Link {
     /// Returns `false` if no subscriber acknowledges messages.
     ///
     /// # Errors
-    /// Fails if no subscriber has acknowledged the zero velocity.
+    /// Fails if the reliable subscribers have not acknowledged the zero velocity in time, or if there is no subscriber.
     fn halt(&mut self, limit: Duration) -> Result<bool, Fault>;
 
     /// Publishes the state of the plan.

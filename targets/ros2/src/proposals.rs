@@ -2,14 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use crate::choices::RANGES;
 use crate::command_graph::{TWIST, TWIST_STAMPED};
 use crate::config::Config;
 use crate::graph::{Endpoint, Graph};
 use crate::names::{dds_topic, dds_type, ros_topic};
 use crate::source::Input;
 
-/// Configuration key of the range sensors, whose value is a list of tables.
-pub(crate) const RANGES: &str = "ranges";
 /// Maximum number of topics in a list.
 const LISTED: usize = 8;
 

@@ -1,8 +1,7 @@
 //! The topics that the driver reads according to the configuration, with their types.
 
-use crate::choices::{BumperSource, Distribution};
+use crate::choices::{BumperSource, Distribution, RANGES};
 use crate::config::{Config, has_topic};
-use crate::proposals::RANGES;
 
 /// The purpose of a topic that the driver reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,10 +3,9 @@
 use mdle_serial::shortened;
 
 use super::{Config, has_topic};
-use crate::choices::BumperSource;
+use crate::choices::{BumperSource, RANGES};
 use crate::local_addresses;
 use crate::names::is_namespace;
-use crate::proposals::RANGES;
 
 impl Config {
     /// Checks the conditions that the range of a single value cannot express.
