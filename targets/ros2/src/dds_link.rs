@@ -31,11 +31,16 @@ const FORGOTTEN: Duration = Duration::from_secs(8);
 /// Maximum number of new participants with which the driver tries to stop a robot that may have been dropped.
 const ATTEMPTS: u32 = 3;
 
+/// The readers of a participant, by their topics.
+type Readers = Vec<(Input, Reader)>;
+
 /// A link to the robot over DDS.
 pub struct DdsLink {
     participant: Participant,
-    readers: Vec<(Input, Reader)>,
+    readers: Readers,
     commands: Commands,
+    /// The participants before this one, with which the state of the plan is published.
+    earlier: Vec<(Participant, Readers, Commands)>,
     /// Number of subscribers of the last command before a suspension.
     subscribers: i32,
     /// Time of the last command or check for messages.
@@ -83,10 +88,7 @@ impl DdsLink {
             Pacing::Lockstep(_) => Delivery::Reliable,
             Pacing::Wall | Pacing::Simulated(_) => Delivery::BestEffort,
         };
-        let inputs = sensing.inputs().cloned();
-        let readers =
-            inputs.map(|input| participant.reader(&input.topic, input.kind, delivery).map(|reader| (input, reader)));
-        let readers = readers.collect::<Result<Vec<_>, _>>()?;
+        let readers = readers(&participant, sensing.inputs(), delivery)?;
         let optional = |name: &str, kind| match config.topic(name) {
             Ok(topic) if !name.is_empty() => participant.writer(&topic, kind, Delivery::Latched).map(Some),
             Ok(_) | Err(_) => Ok(None),
@@ -101,6 +103,7 @@ impl DdsLink {
             participant,
             readers,
             commands,
+            earlier: Vec::new(),
             subscribers: 0,
             active: Instant::now(),
             may_be_forgotten: false,
@@ -158,15 +161,32 @@ impl DdsLink {
         self.clock.unwrap_or_else(ros_now)
     }
 
-    /// Stops the robot with a new participant, after finding as many subscribers as the first participant had.
-    fn halt_anew(&self, limit: Duration) -> Result<bool, Fault> {
+    /// Stops the robot with a new participant, after finding as many subscribers as the first participant had. The new
+    /// participant also reads the robot's topics from now on.
+    fn halt_anew(&mut self, limit: Duration) -> Result<bool, Fault> {
         let (expected, stamp) = (self.subscribers.max(1), self.stamp());
         let participant = Participant::join(&self.config)?;
-        let mut commands = self.commands.by(&participant)?;
-        let met = commands.meet(expected, stamp);
-        let halted = commands.insist(&participant, limit, stamp);
+        let readers = readers(&participant, self.readers.iter().map(|(input, _)| input), Delivery::BestEffort)?;
+        let commands = self.commands.by(&participant)?;
+        let earlier = (
+            mem::replace(&mut self.participant, participant),
+            mem::replace(&mut self.readers, readers),
+            mem::replace(&mut self.commands, commands),
+        );
+        self.earlier.push(earlier);
+        let met = self.commands.meet(expected, stamp);
+        let halted = self.commands.insist(&self.participant, limit, stamp);
         met.and(halted)
     }
+}
+
+/// Returns readers of the topics of `inputs`.
+fn readers<'i>(
+    participant: &Participant,
+    inputs: impl Iterator<Item = &'i Input>,
+    delivery: Delivery,
+) -> Result<Readers, Fault> {
+    inputs.map(|input| Ok((input.clone(), participant.reader(&input.topic, input.kind, delivery)?))).collect()
 }
 
 impl Link for DdsLink {

@@ -190,6 +190,10 @@ impl<L: Link> Ros2<L> {
     /// # Errors
     /// Fails if odometry continues to report more than a quarter of the speeds that the robot had `before`.
     fn slows(&mut self, before: Twist) -> Result<bool, Fault> {
+        // What has come while the robot was being stopped, or while the program was suspended, is no news.
+        if self.receive(Nanos::ZERO).is_err() {
+            return Ok(false);
+        }
         let (begun, (last, _)) = (Instant::now(), self.sensing.stamps());
         let (mut slowest, mut rest): (Option<Twist>, Option<Instant>) = (None, None);
         while begun.elapsed() < SLOWING {

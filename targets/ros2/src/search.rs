@@ -70,9 +70,10 @@ impl Search<'_> {
     ) -> Result<Option<Commands>, Fault> {
         let mut commands = None;
         let found = self.seek((participant, readers), sensing, publishers, may_rejoin, &mut commands);
-        // A robot that another program has left moving is stopped, too.
+        // A robot that another program has left moving is stopped, too. A subscriber that has just been found may
+        // acknowledge a message unread.
         if let (Err(_), Some(mut commands)) = (&found, commands) {
-            let _ = commands.halt(participant, HALTING, ros_now());
+            let _ = commands.insist(participant, HALTING, ros_now());
         }
         found
     }
