@@ -20,7 +20,7 @@ use mdle_sim::{Body, Footprint, Make, Simulated, World};
 use mdle_tests::chance::{Chance, repeated, sized};
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
-use mdle_tests::ways::{Place, excess};
+use mdle_tests::ways::{Point, excess};
 
 use crate::bad_line::Line;
 
@@ -82,7 +82,7 @@ struct Course {
     status: Option<i32>,
     report: String,
     /// For each trip, `true` if the robot led it, and the robot's positions by odometry.
-    trips: Vec<(bool, Vec<Place>)>,
+    trips: Vec<(bool, Vec<Point>)>,
 }
 
 impl Course {
@@ -107,7 +107,7 @@ impl Course {
 
 /// Returns the trips that a robot made by `path` and `Follow`, according to its report. `places` contains the robot's
 /// positions over time.
-fn trips(report: &str, places: &[(f64, Place)]) -> Vec<(bool, Vec<Place>)> {
+fn trips(report: &str, places: &[(f64, Point)]) -> Vec<(bool, Vec<Point>)> {
     let lines: Vec<(f64, &str)> = report
         .lines()
         .filter_map(|line| line.split_once(" s  "))

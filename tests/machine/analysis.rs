@@ -9,7 +9,7 @@ use mdle_compiler::Compiled;
 use mdle_compiler::analysis::{Analysis, Reach, analyze, lints};
 use mdle_compiler::fsm::ElementKind;
 use mdle_compiler::plan::{Plan, Quark, condition_text};
-use mdle_compiler::trace::{Applied, Counted, Outcome, Script, TraceLine, run};
+use mdle_compiler::trace::{Applied, Counted, Script, TraceLine, TurnResult, run};
 use mdle_runtime::{Cursor, Frame, Machine};
 use mdle_scripted::INTERRUPTS;
 use mdle_tests::chance::{Chance, repeated};
@@ -234,7 +234,7 @@ fn runs_last_as_long_as_analysis_computes() {
         let analysis = analyze(&compiled.machine);
         let times: Vec<f64> = script.turns().iter().map(|turn| turn.t.0 as f64 / 1e9).collect();
         let gap = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-        for TraceLine { turn, outcome: Outcome { applied, fired, .. }, .. } in
+        for TraceLine { turn, outcome: TurnResult { applied, fired, .. }, .. } in
             run(Counted::new(&compiled.machine), &script)
         {
             let now = times[turn];

@@ -10,7 +10,7 @@ use mdle_compiler::diagnostic::SourceId;
 use mdle_compiler::fsm::{self, Element};
 use mdle_compiler::load;
 use mdle_compiler::syntax::{arena_for, parse};
-use mdle_compiler::trace::{Applied, COMPLETED, Outcome, Script, TraceLine};
+use mdle_compiler::trace::{Applied, COMPLETED, Script, TraceLine, TurnResult};
 use mdle_scripted::alphabet::Alphabet;
 use mdle_scripted::drive;
 use mdle_tests::chance::{Chance, repeated};
@@ -167,7 +167,7 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
     productions::count(text, &parse(SourceId(0), text, &arena).0, &mut seen.productions);
     seen.plans += 1;
     seen.repeated += usize::from(compiled.nondegenerate.plan() != &compiled.plan);
-    for TraceLine { outcome: Outcome { applied, fired, .. }, .. } in tree {
+    for TraceLine { outcome: TurnResult { applied, fired, .. }, .. } in tree {
         seen.turns += 1;
         seen.over += usize::from(*applied == Applied::Over);
         seen.cut += usize::from(*applied == Applied::Cut);

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use mdle_compiler::trace::{COMPLETED, Fired, Script, Table, TraceLine, run};
+use mdle_compiler::trace::{COMPLETED, Fired, Script, TableMachine, TraceLine, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::pipeline::compile;
@@ -191,7 +191,7 @@ fn matrices_that_are_read_back_drive_the_transitions_of_the_table() {
         }
         println!("seed {seed}\n{text}");
         let plan = &compiled.nondegenerate;
-        let trace: Vec<_> = run(Table::new(plan).unwrap(), &script).collect();
+        let trace: Vec<_> = run(TableMachine::new(plan).unwrap(), &script).collect();
         plans += 1;
         for combined in [false, true] {
             let terms = terms(plan, combined).unwrap();

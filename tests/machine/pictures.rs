@@ -12,7 +12,7 @@ use mdle_compiler::Compiled;
 use mdle_compiler::fsm::{Machine, expand, lower};
 use mdle_compiler::picture::{dot, mermaid, svg};
 use mdle_compiler::plan::Condition;
-use mdle_compiler::trace::{Script, Table, TraceLine, run};
+use mdle_compiler::trace::{Script, TableMachine, TraceLine, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::golden::judge;
@@ -174,8 +174,8 @@ fn graphs_have_the_transitions_of_the_plan() {
         let graph = read_dot(&dot(&expanded).unwrap());
         let name = |state: u64| if state == expanded.states() { "over".into() } else { format!("a{state}") };
         let turns = Script::read(&script).unwrap();
-        for TraceLine { outcome, .. } in
-            run(Table::new(&compiled.nondegenerate).unwrap(), &turns).filter(|line| line.outcome.fired.len() < 100)
+        for TraceLine { outcome, .. } in run(TableMachine::new(&compiled.nondegenerate).unwrap(), &turns)
+            .filter(|line| line.outcome.fired.len() < 100)
         {
             let behind = outcome.fired.iter().skip(1).map(|fired| fired.from).chain([outcome.state]);
             for (fired, to) in outcome.fired.iter().zip(behind) {

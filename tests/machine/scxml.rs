@@ -4,7 +4,7 @@
 
 use mdle_compiler::picture::scxml;
 use mdle_compiler::plan::Nondegenerate;
-use mdle_compiler::trace::{Applied, Script, Table, TraceLine, run};
+use mdle_compiler::trace::{Applied, Script, TableMachine, TraceLine, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::ecmascript::Value;
 use mdle_tests::golden::judge;
@@ -54,7 +54,7 @@ fn compare(plan: &Nondegenerate, script: &str, seen: &mut Seen) {
     let document = read(&scxml(plan).expect("a small plan"));
     let mut machine = Machine::new(&document);
     let turns = Script::read(script).unwrap();
-    let trace: Vec<_> = run(Table::new(plan).unwrap(), &turns).collect();
+    let trace: Vec<_> = run(TableMachine::new(plan).unwrap(), &turns).collect();
     let last = trace.last().map_or(0, |line| line.outcome.state);
     for (TraceLine { turn, outcome, .. }, line) in trace.iter().zip(script.lines()) {
         let left = machine.event("turn", data(line));

@@ -10,11 +10,11 @@ use std::process::{Command, Output};
 use mdle_tests::chance::repeated;
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
-use mdle_tests::ways::{Place, distance};
+use mdle_tests::ways::{Point, distance};
 use serde_json::Value;
 
 /// Target positions of the members relative to the leader: ahead and to the left, in metres.
-const PLACES: [(&str, Place); 2] = [("robot2", [-0.866, 0.5]), ("robot3", [-0.866, -0.5])];
+const PLACES: [(&str, Point); 2] = [("robot2", [-0.866, 0.5]), ("robot3", [-0.866, -0.5])];
 /// Time constant with which the triangle follows the leader's heading, in seconds. `PERIOD` is the period of a turn, in
 /// seconds.
 const TURNS_IN: f64 = 1.5;
@@ -52,7 +52,7 @@ fn number(of: &Value, key: &str) -> f64 {
     of[key].as_f64().unwrap()
 }
 
-fn place(of: &Value) -> Place {
+fn place(of: &Value) -> Point {
     ["x", "y"].map(|axis| number(of, axis))
 }
 

@@ -8,7 +8,7 @@ use std::thread;
 
 use mdle_engine::{Engine, Library, PlanEvent, When};
 use mdle_host::{Microphones, Moment, Pace, Pilot as _, RunTerms, StopRequest, Time, Transitions};
-use mdle_record::{Change, Step};
+use mdle_record::{Change, RecordedTransition};
 use mdle_runtime::{Nanos, Robot as _, Sensed, Turn, Twist};
 use mdle_sim::{Simulated, World};
 
@@ -36,7 +36,7 @@ struct Made {
 
 /// Outcome of a turn: the input, the transitions, the state, and the number of the plan.
 #[derive(Debug, PartialEq)]
-struct Outcome(Turn<Twist>, Vec<Step>, Option<u64>, u64);
+struct Outcome(Turn<Twist>, Vec<RecordedTransition>, Option<u64>, u64);
 
 fn engine(time: Time) -> Engine<Odd> {
     let terms = RunTerms { time, period: PERIOD, request: StopRequest::default(), microphones: Microphones::default() };
@@ -47,7 +47,8 @@ fn turn(engine: &mut Engine<Odd>, y: &Sensed, number: u64) -> Outcome {
     let (mut y, t, mut transitions) = (*y, Nanos(number * 100_000_000), Transitions::default());
     engine.complete(&mut y, t);
     let turn = engine.turn(Moment { y: &y, t, number }, &mut transitions).unwrap();
-    let steps = transitions.iter().map(|(made, fired)| Step::new(made, fired.iter().map(|(number, _)| *number)));
+    let steps =
+        transitions.iter().map(|(made, fired)| RecordedTransition::new(made, fired.iter().map(|(number, _)| *number)));
     Outcome(turn, steps.collect(), engine.machine().map(|machine| machine.state()), engine.plan_number())
 }
 

@@ -10,7 +10,7 @@ use std::process::{Command, Output};
 use mdle_tests::chance::{repeated, sized};
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
-use mdle_tests::ways::{Place, bulge, excess};
+use mdle_tests::ways::{Point, bulge, excess};
 use serde_json::Value;
 
 /// Number of trips: four laps there and back.
@@ -37,12 +37,12 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
 /// Trips of a robot by `path` and `Follow`, in order, according to the log of a run.
 struct Trips {
     /// For each trip, `true` if the robot led it, and the robot's positions.
-    trips: Vec<(bool, Vec<Place>)>,
+    trips: Vec<(bool, Vec<Point>)>,
 }
 
 impl Trips {
     fn of(log: &[Value], robot: &str) -> Self {
-        let mut trips: Vec<(bool, Vec<Place>)> = Vec::new();
+        let mut trips: Vec<(bool, Vec<Point>)> = Vec::new();
         let mut last = 0;
         for turn in log.iter().filter(|turn| turn["robot"] == robot) {
             let (state, law) = (turn["state"].as_u64().unwrap(), turn["law"].as_str().unwrap());
@@ -60,7 +60,7 @@ impl Trips {
     }
 
     /// Returns the positions on the trips that the robot led.
-    fn led(&self) -> impl Iterator<Item = &Vec<Place>> {
+    fn led(&self) -> impl Iterator<Item = &Vec<Point>> {
         self.trips.iter().filter(|(is_led, _)| *is_led).map(|(_, way)| way)
     }
 }

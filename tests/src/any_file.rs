@@ -15,7 +15,7 @@ use mdle_host::setpoints;
 use mdle_record::frames::Frames;
 use mdle_record::{RecordFile, RecordedTurn, Records, TurnMade};
 use mdle_runtime::{MetersPerSecond, Radians, RadiansPerSecond, Twist};
-use mdle_sim::{Place, Walls, World};
+use mdle_sim::{Point, Walls, World};
 use mdle_theory::theorem;
 
 use crate::any_text::text;
@@ -100,7 +100,7 @@ pub fn map(bytes: &[u8]) {
 
 fn stands(world: &World) {
     let walls = Walls::of(world);
-    let start = Place { x: world.start.x.0, y: world.start.y.0 };
+    let start = Point { x: world.start.x.0, y: world.start.y.0 };
     assert!(walls.clearance(start, 5.0) >= 0.0);
     for look in 0..8_u32 {
         let range = walls.ray(start, Radians(f64::from(look)), 1e7);

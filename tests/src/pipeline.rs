@@ -8,7 +8,7 @@ use mdle_compiler::alphabet::{self, Alphabet};
 use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors, most_shown};
 use mdle_compiler::fsm::{Machine, expand, lower};
 use mdle_compiler::syntax::Loader;
-use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
+use mdle_compiler::trace::{Counted, MatrixProduct, Script, TableMachine, TraceLine, Tree, run};
 
 /// Maximum number of states up to which a plan is also run in its expanded form.
 const EXPANDED: u64 = 2000;
@@ -130,7 +130,7 @@ impl<'c> Machines<'c> {
         if let Some(expanded) = &self.expanded {
             let plan = &self.compiled.nondegenerate;
             traces.extend([
-                ("table", run(Table::new(plan).expect("a small plan"), script).collect()),
+                ("table", run(TableMachine::new(plan).expect("a small plan"), script).collect()),
                 ("matrix", run(MatrixProduct::new(plan).expect("a small plan"), script).collect()),
                 ("counted, expanded", run(Counted::new(expanded), script).collect()),
             ]);

@@ -6,12 +6,12 @@ use std::path::Path;
 
 use mdle_compiler::alphabet::{Decimal, Kind, Unit};
 use mdle_compiler::diagnostic::{SourceId, Span};
-use mdle_compiler::plan::{Part, Plan};
+use mdle_compiler::plan::{Plan, PlanPart};
 use mdle_runtime::Nanos;
 
 use crate::launch::Loaded;
-use crate::places::{Place, meant, places};
-use crate::run::{Run, Step};
+use crate::places::{StopPlace, meant, places};
+use crate::run::{Run, StepKind};
 
 /// Number of a breakpoint.
 pub(crate) type Id = i64;
@@ -19,9 +19,9 @@ pub(crate) type Id = i64;
 /// The breakpoints of a session.
 #[derive(Debug)]
 pub(crate) struct Breakpoints {
-    places: Vec<Place>,
+    places: Vec<StopPlace>,
     /// For each file, the numbers of its breakpoints, with the places at which they stop the run.
-    lines: BTreeMap<SourceId, Vec<(Id, Place)>>,
+    lines: BTreeMap<SourceId, Vec<(Id, StopPlace)>>,
     names: Vec<(Id, Name)>,
     last: Id,
 }
@@ -42,7 +42,7 @@ impl Breakpoints {
     }
 
     /// Returns all places at which a run can stop.
-    pub(crate) fn places(&self) -> &[Place] {
+    pub(crate) fn places(&self) -> &[StopPlace] {
         &self.places
     }
 
@@ -53,7 +53,7 @@ impl Breakpoints {
         loaded: &Loaded,
         path: &Path,
         wanted: &[(u32, Option<u32>)],
-    ) -> Vec<(Id, Result<Place, String>)> {
+    ) -> Vec<(Id, Result<StopPlace, String>)> {
         let source = loaded.source(path);
         let mut set = Vec::new();
         for (line, column) in wanted {
@@ -88,15 +88,15 @@ impl Breakpoints {
 
     /// Returns the breakpoints at the current position of a run. `step` is the step that led to this position, or
     /// `None` at the start of the run.
-    pub(crate) fn hits(&self, run: &Run<'_>, plan: &Plan, step: Option<Step>) -> Vec<Id> {
+    pub(crate) fn hits(&self, run: &Run<'_>, plan: &Plan, step: Option<StepKind>) -> Vec<Id> {
         let entered = match step {
             None => 0,
-            Some(Step::Transition { kept, .. }) => kept,
-            Some(Step::Turn | Step::End) => usize::MAX,
+            Some(StepKind::Transition { kept, .. }) => kept,
+            Some(StepKind::Turn | StepKind::End) => usize::MAX,
         };
-        let entered: Vec<Part<'_>> = run.open().skip(entered).map(|open| open.part()).collect();
+        let entered: Vec<PlanPart<'_>> = run.open().skip(entered).map(|open| open.part()).collect();
         let firing = if self.lines.values().all(Vec::is_empty) { Vec::new() } else { run.firing() };
-        let is_hit = |place: &Place| {
+        let is_hit = |place: &StopPlace| {
             let has = |span: &Span| *span == place.span;
             if place.is_operand { firing.iter().any(has) } else { entered.iter().any(|part| has(&part.span())) }
         };
@@ -104,7 +104,7 @@ impl Breakpoints {
         let by_name = self.names.iter().filter(|(_, name)| match name {
             Name::Entered(name) => entered.iter().any(|part| is_called(*part, plan, name)),
             Name::Time(time) => {
-                let begins = matches!(step, None | Some(Step::Turn));
+                let begins = matches!(step, None | Some(StepKind::Turn));
                 begins && run.reports().t >= *time && run.reports_before().is_none_or(|before| before.t < *time)
             }
         });
@@ -129,10 +129,10 @@ fn time(text: &str) -> Option<Nanos> {
 }
 
 /// Returns `true` if `part` is a scope with this name or an atom with this law.
-fn is_called(part: Part<'_>, plan: &Plan, name: &str) -> bool {
+fn is_called(part: PlanPart<'_>, plan: &Plan, name: &str) -> bool {
     match part {
-        Part::Scope(scope) => scope.name == name,
-        Part::Atom(atom) => plan.quark(atom.law).name == name,
-        Part::Loop(_) => false,
+        PlanPart::Scope(scope) => scope.name == name,
+        PlanPart::Atom(atom) => plan.quark(atom.law).name == name,
+        PlanPart::Loop(_) => false,
     }
 }

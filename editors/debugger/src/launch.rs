@@ -131,7 +131,7 @@ impl Loaded {
 /// Returns the texts of a plan's `after` conditions, by the fact that each condition tests.
 fn facts(compiled: &Compiled) -> BTreeMap<(RecordId, u32), String> {
     let mut facts = BTreeMap::new();
-    for interrupt in compiled.plan.parts().filter_map(mdle_compiler::plan::Part::interrupt) {
+    for interrupt in compiled.plan.parts().filter_map(mdle_compiler::plan::PlanPart::interrupt) {
         interrupt.condition.fold((), &mut |(), part| {
             if let Condition::After(after) = part {
                 facts.insert((after.record, after.fact), after.text.clone());

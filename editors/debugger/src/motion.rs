@@ -1,11 +1,11 @@
 //! Motions of a run: continue, step forward, and step back.
 
-use mdle_compiler::plan::Part;
+use mdle_compiler::plan::PlanPart;
 use serde_json::{Value, json};
 
 use crate::ServeError;
 use crate::breakpoints::Id;
-use crate::run::Step;
+use crate::run::StepKind;
 use crate::session::Session;
 
 /// Number of steps after which the run checks for a request that interrupts it.
@@ -64,14 +64,14 @@ impl Session<'_, '_, '_> {
         self.lists.clear();
         match motion {
             Motion::Continue | Motion::Turn | Motion::Transition | Motion::Out => self.forward(motion),
-            Motion::TurnBack => self.back("step", |_, step| step == Some(Step::End)),
-            Motion::TransitionBack => self.back("step", |_, step| matches!(step, Some(Step::Transition { .. }))),
+            Motion::TurnBack => self.back("step", |_, step| step == Some(StepKind::End)),
+            Motion::TransitionBack => self.back("step", |_, step| matches!(step, Some(StepKind::Transition { .. }))),
             Motion::ContinueBack => self.back("breakpoint", |hits, _| !hits.is_empty()),
         }
     }
 
     fn forward(&mut self, motion: Motion) -> Result<(), ServeError> {
-        let is_scope = |part: Part<'_>| matches!(part, Part::Scope(_));
+        let is_scope = |part: PlanPart<'_>| matches!(part, PlanPart::Scope(_));
         let scope = self.run.open().enumerate().filter(|(_, open)| is_scope(open.part())).map(|(at, _)| at).next_back();
         let mut steps = 0_u64;
         loop {
@@ -88,8 +88,8 @@ impl Session<'_, '_, '_> {
                 return self.stopped("breakpoint", "Breakpoint", &hits);
             }
             let is_there = match (motion, step) {
-                (Motion::Turn, Step::End) | (Motion::Transition, Step::Transition { .. }) => true,
-                (Motion::Out, Step::Transition { ended, .. }) => scope.is_none_or(|scope| ended <= scope),
+                (Motion::Turn, StepKind::End) | (Motion::Transition, StepKind::Transition { .. }) => true,
+                (Motion::Out, StepKind::Transition { ended, .. }) => scope.is_none_or(|scope| ended <= scope),
                 _ => false,
             };
             if is_there {
@@ -105,7 +105,7 @@ impl Session<'_, '_, '_> {
 
     /// Moves the run back to the last earlier position that `is_there` accepts, or to the start of the run if there is
     /// none, and reports the stop. `is_there` gets the breakpoints at a position and the step that leads to it.
-    fn back(&mut self, reason: &str, is_there: impl Fn(&[Id], Option<Step>) -> bool) -> Result<(), ServeError> {
+    fn back(&mut self, reason: &str, is_there: impl Fn(&[Id], Option<StepKind>) -> bool) -> Result<(), ServeError> {
         let (breakpoints, plan) = (&self.breakpoints, &self.loaded.compiled.plan);
         self.run.back(|run, step| is_there(&breakpoints.hits(run, plan, step), step));
         if self.run.at().steps == 0 {

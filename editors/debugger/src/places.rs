@@ -1,13 +1,13 @@
 //! Places in a plan at which a run can stop: starts of elements, and operands of conditions.
 
 use mdle_compiler::diagnostic::{SourceId, Span};
-use mdle_compiler::plan::Part;
+use mdle_compiler::plan::PlanPart;
 
 use crate::launch::Loaded;
 
 /// A place at which a run can stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Place {
+pub(crate) struct StopPlace {
     source: SourceId,
     /// Line of the start, from 0.
     pub(crate) line: u32,
@@ -19,15 +19,15 @@ pub(crate) struct Place {
 }
 
 /// Returns all places of a plan, sorted by file and position.
-pub(crate) fn places(loaded: &Loaded) -> Vec<Place> {
+pub(crate) fn places(loaded: &Loaded) -> Vec<StopPlace> {
     let place = |span: Span, is_operand: bool| {
         let (source, line, column) = loaded.place(span);
-        Place { source, line, column, is_operand, span }
+        StopPlace { source, line, column, is_operand, span }
     };
     let mut places = Vec::new();
     for part in loaded.compiled.plan.parts() {
         // A loop is entered together with its first element.
-        if !matches!(part, Part::Loop(_)) {
+        if !matches!(part, PlanPart::Loop(_)) {
             places.push(place(part.span(), false));
         }
         let operands = part.interrupt().into_iter().flat_map(|interrupt| &interrupt.operands);
@@ -42,14 +42,14 @@ pub(crate) fn places(loaded: &Loaded) -> Vec<Place> {
 /// Returns the place at which a breakpoint in the given line stops the run. With a column, this is the operand at the
 /// column, otherwise the next place in the line, otherwise the last place in the line. Without a column, this is the
 /// element that begins in the line. If there is no such place, it is the next place in the file.
-pub(crate) fn meant(places: &[Place], source: SourceId, line: u32, column: Option<u32>) -> Option<Place> {
+pub(crate) fn meant(places: &[StopPlace], source: SourceId, line: u32, column: Option<u32>) -> Option<StopPlace> {
     let from = places.partition_point(|place| (place.source, place.line) < (source, line));
     let to = places.partition_point(|place| (place.source, place.line) <= (source, line));
     let (in_line, after) = (places.get(from..to)?, places.get(from..)?);
     let next = || after.iter().find(|place| place.source == source);
     let found = match column {
         Some(column) => {
-            let around = |place: &&Place| place.is_operand && place.column <= column && column < place.end_column();
+            let around = |place: &&StopPlace| place.is_operand && place.column <= column && column < place.end_column();
             let behind = || in_line.iter().find(|place| place.column >= column);
             in_line.iter().rev().find(around).or_else(behind).or_else(|| in_line.last())
         }
@@ -59,11 +59,16 @@ pub(crate) fn meant(places: &[Place], source: SourceId, line: u32, column: Optio
 }
 
 /// Returns the places that begin in the lines from `first` to `last`.
-pub(crate) fn between(places: &[Place], source: SourceId, first: u32, last: u32) -> impl Iterator<Item = &Place> {
+pub(crate) fn between(
+    places: &[StopPlace],
+    source: SourceId,
+    first: u32,
+    last: u32,
+) -> impl Iterator<Item = &StopPlace> {
     places.iter().filter(move |place| place.source == source && (first..=last).contains(&place.line))
 }
 
-impl Place {
+impl StopPlace {
     /// Returns the column after the end of the place, which must end in the line in which it begins. Operands contain
     /// only characters of one UTF-16 unit.
     fn end_column(&self) -> u32 {

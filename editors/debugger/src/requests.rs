@@ -7,9 +7,9 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
-use crate::places::{Place, between};
+use crate::places::{StopPlace, between};
 use crate::session::Session;
-use crate::stack::{Frame, frames};
+use crate::stack::{StackFrame, frames};
 use crate::why::{sentence, why};
 
 /// Number of the debugged plan's only thread.
@@ -122,7 +122,7 @@ fn set_breakpoints(session: &mut Session<'_, '_, '_>, wanted: SetBreakpoints) ->
     Ok(json!({ "breakpoints": answered.collect::<Vec<_>>() }))
 }
 
-fn position(session: &Session<'_, '_, '_>, place: &Place) -> Value {
+fn position(session: &Session<'_, '_, '_>, place: &StopPlace) -> Value {
     json!({ "line": place.line + session.base.line, "column": place.column + session.base.column })
 }
 
@@ -151,7 +151,12 @@ fn stack_trace(session: &Session<'_, '_, '_>, asked: &StackTrace) -> Value {
     let mut frames = frames(&session.run, &loaded.compiled.plan);
     if frames.is_empty() {
         let root = &loaded.compiled.plan.root;
-        frames.push(Frame { name: format!("{} has ended", root.name), span: root.span, open: 0, loops: Vec::new() });
+        frames.push(StackFrame {
+            name: format!("{} has ended", root.name),
+            span: root.span,
+            open: 0,
+            loops: Vec::new(),
+        });
     }
     let total = frames.len();
     let asked_for = frames.iter().enumerate().skip(asked.start_frame.unwrap_or(0));
@@ -161,7 +166,7 @@ fn stack_trace(session: &Session<'_, '_, '_>, asked: &StackTrace) -> Value {
 }
 
 /// Returns a frame as a protocol object, with its place in a file.
-fn shown(session: &Session<'_, '_, '_>, number: usize, frame: &Frame) -> Value {
+fn shown(session: &Session<'_, '_, '_>, number: usize, frame: &StackFrame) -> Value {
     let loaded = session.loaded;
     let (source, line, column) = loaded.place(frame.span);
     let (_, end_line, end_column) = loaded.place(Span { start: frame.span.end, ..frame.span });
@@ -180,7 +185,7 @@ fn shown(session: &Session<'_, '_, '_>, number: usize, frame: &Frame) -> Value {
 
 /// Returns the frame with this number; without a number, the frame of the current atom. Returns `None` once the plan
 /// has ended.
-fn frame(session: &Session<'_, '_, '_>, number: Option<usize>) -> Result<Option<Frame>, String> {
+fn frame(session: &Session<'_, '_, '_>, number: Option<usize>) -> Result<Option<StackFrame>, String> {
     let frames = frames(&session.run, &session.loaded.compiled.plan);
     let index = number.unwrap_or(1).checked_sub(1).filter(|index| *index < frames.len().max(1));
     let index = index.ok_or_else(|| "there is no such frame: the run has gone on".to_owned())?;

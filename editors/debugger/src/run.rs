@@ -10,7 +10,7 @@ const MOST_COPIES: usize = 64;
 
 /// A position in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct At {
+pub(crate) struct RunPosition {
     /// Number of steps from the start of the run.
     pub(crate) steps: u64,
     /// Number of the turn, from 0.
@@ -18,12 +18,12 @@ pub(crate) struct At {
     /// Number of transitions in the turn so far.
     made: usize,
     /// Input of the turn; `None` until the turn has ended.
-    pub(crate) input: Option<Input>,
+    pub(crate) input: Option<TurnInput>,
 }
 
 /// Input of a turn that has ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Input {
+pub(crate) enum TurnInput {
     /// The input that the current atom's law returns.
     Law,
     /// The null input, because the turn reached the maximum number of transitions.
@@ -34,7 +34,7 @@ pub(crate) enum Input {
 
 /// Kind of a step forward.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Step {
+pub(crate) enum StepKind {
     /// The next turn has begun, at a later time.
     Turn,
     /// A scope has ended. `ended` is the number of open elements that enclosed the scope; `kept` is the number of open
@@ -49,9 +49,9 @@ pub(crate) enum Step {
 pub(crate) struct Run<'p> {
     turns: &'p [Reports],
     tree: Tree<'p>,
-    at: At,
+    at: RunPosition,
     /// Copies of the state in the order of the run; the first one is the start of the run.
-    copies: Vec<(At, Tree<'p>)>,
+    copies: Vec<(RunPosition, Tree<'p>)>,
     /// Number of turns between two copies of the state.
     apart: usize,
 }
@@ -61,12 +61,12 @@ impl<'p> Run<'p> {
     pub(crate) fn new(plan: &'p Plan, turns: &'p [Reports]) -> Option<Self> {
         let mut tree = Tree::new(plan);
         tree.begin(turns.first()?);
-        let at = At { steps: 0, turn: 0, made: 0, input: None };
+        let at = RunPosition { steps: 0, turn: 0, made: 0, input: None };
         Some(Self { turns, at, copies: vec![(at, tree.clone())], tree, apart: 32 })
     }
 
     /// Returns the current position.
-    pub(crate) fn at(&self) -> At {
+    pub(crate) fn at(&self) -> RunPosition {
         self.at
     }
 
@@ -96,36 +96,36 @@ impl<'p> Run<'p> {
     }
 
     /// Makes a step; returns `None` at the end of the plan or of the script.
-    pub(crate) fn step(&mut self) -> Option<Step> {
+    pub(crate) fn step(&mut self) -> Option<StepKind> {
         let step = if self.at.input.is_some() { self.next_turn()? } else { self.go_on() };
         self.at.steps += 1;
         Some(step)
     }
 
-    fn next_turn(&mut self) -> Option<Step> {
+    fn next_turn(&mut self) -> Option<StepKind> {
         if self.is_over() || self.at.turn + 1 >= self.turns.len() {
             return None;
         }
         if self.copies.last().is_none_or(|(at, _)| at.turn + self.apart <= self.at.turn) {
             self.copy();
         }
-        self.at = At { turn: self.at.turn + 1, made: 0, input: None, ..self.at };
-        Some(Step::Turn)
+        self.at = RunPosition { turn: self.at.turn + 1, made: 0, input: None, ..self.at };
+        Some(StepKind::Turn)
     }
 
-    fn go_on(&mut self) -> Step {
+    fn go_on(&mut self) -> StepKind {
         match self.tree.step(&self.turns[self.at.turn], self.at.made) {
             TreeStep::Transition { ended, kept, .. } => {
                 self.at.made += 1;
-                Step::Transition { ended, kept }
+                StepKind::Transition { ended, kept }
             }
             TreeStep::End(applied) => {
                 self.at.input = Some(match applied {
-                    Applied::Law(_) => Input::Law,
-                    Applied::Cut => Input::Cut,
-                    Applied::Over => Input::Over,
+                    Applied::Law(_) => TurnInput::Law,
+                    Applied::Cut => TurnInput::Cut,
+                    Applied::Over => TurnInput::Over,
                 });
-                Step::End
+                StepKind::End
             }
         }
     }
@@ -145,7 +145,7 @@ impl<'p> Run<'p> {
     /// Moves back to the last earlier position that `is_there` accepts, or to the start of the run if there is none.
     /// The second argument of `is_there` is the step that leads to the position; `None` at the start. Returns `false`
     /// if the run is already at its start.
-    pub(crate) fn back(&mut self, mut is_there: impl FnMut(&Self, Option<Step>) -> bool) -> bool {
+    pub(crate) fn back(&mut self, mut is_there: impl FnMut(&Self, Option<StepKind>) -> bool) -> bool {
         let here = self.at.steps;
         if here == 0 {
             return false;
@@ -237,7 +237,7 @@ mod tests {
             while run.at.turn < 1_100 {
                 run.step();
             }
-            assert!(run.back(|run, step| step == Some(Step::Turn) && run.at.turn == 3));
+            assert!(run.back(|run, step| step == Some(StepKind::Turn) && run.at.turn == 3));
             assert_eq!(run.at.turn, 3);
             assert!(run.back(|_, _| false));
             assert_eq!(run.at.steps, 0);

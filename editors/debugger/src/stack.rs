@@ -1,13 +1,13 @@
 //! The stack of a run: the current atom and its enclosing scopes, with the passes of their loops.
 
 use mdle_compiler::diagnostic::Span;
-use mdle_compiler::plan::{Part, Plan};
+use mdle_compiler::plan::{Plan, PlanPart};
 
 use crate::run::Run;
 
 /// A frame of the stack: an atom or a scope.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Frame {
+pub(crate) struct StackFrame {
     /// Name of the frame as shown to users.
     pub(crate) name: String,
     /// Place of the atom or of the scope's definition.
@@ -20,22 +20,22 @@ pub(crate) struct Frame {
 }
 
 /// Returns the frames from the current atom to the plan; none once the plan has ended.
-pub(crate) fn frames(run: &Run<'_>, plan: &Plan) -> Vec<Frame> {
+pub(crate) fn frames(run: &Run<'_>, plan: &Plan) -> Vec<StackFrame> {
     let (mut frames, mut loops, mut passes) = (Vec::new(), Vec::new(), String::new());
     for (open, element) in run.open().enumerate() {
         let (name, span) = match element.part() {
-            Part::Loop(repeated) => {
+            PlanPart::Loop(repeated) => {
                 let of = repeated.times.map_or_else(|| "without end".to_owned(), |times| format!("of {times}"));
                 passes += &format!(", pass {} {of}", element.pass());
                 loops.push(open);
                 continue;
             }
-            Part::Scope(scope) if scope.name.is_empty() => (format!("({})", scope.interrupt.text), scope.span),
-            Part::Scope(scope) => (scope.name.clone(), scope.span),
-            Part::Atom(atom) => (plan.quark(atom.law).text.clone(), atom.span),
+            PlanPart::Scope(scope) if scope.name.is_empty() => (format!("({})", scope.interrupt.text), scope.span),
+            PlanPart::Scope(scope) => (scope.name.clone(), scope.span),
+            PlanPart::Atom(atom) => (plan.quark(atom.law).text.clone(), atom.span),
         };
         let (name, loops) = (name + &std::mem::take(&mut passes), std::mem::take(&mut loops));
-        frames.push(Frame { name, span, open, loops });
+        frames.push(StackFrame { name, span, open, loops });
     }
     frames.reverse();
     frames

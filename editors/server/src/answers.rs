@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 
 use crate::commands;
 use crate::convert::{self, Converter};
-use crate::documents::{At, Document, Documents, Plan, Positions};
-use crate::params::{Params, Refusal};
+use crate::documents::{Document, Documents, Plan, Positions, ProtocolPosition};
+use crate::params::{Params, RequestError};
 use mdle_language_service::completion::ItemKind;
 use mdle_language_service::diagnostics::findings;
 use mdle_language_service::formatting::TextEdit;
@@ -34,13 +34,13 @@ impl Asked<'_> {
         self.plan.view(feature)
     }
 
-    pub(crate) fn byte(&self, at: Option<At>) -> Result<usize, Refusal> {
-        let at = at.ok_or_else(|| Refusal::params("missing `position`"))?;
+    pub(crate) fn byte(&self, at: Option<ProtocolPosition>) -> Result<usize, RequestError> {
+        let at = at.ok_or_else(|| RequestError::params("missing `position`"))?;
         Ok(Lines::of(&self.document.text).byte(&self.document.text, at.into()))
     }
 
-    fn bytes(&self, range: Option<Positions>) -> Result<Range<usize>, Refusal> {
-        let Positions { start, end } = range.ok_or_else(|| Refusal::params("missing `range`"))?;
+    fn bytes(&self, range: Option<Positions>) -> Result<Range<usize>, RequestError> {
+        let Positions { start, end } = range.ok_or_else(|| RequestError::params("missing `range`"))?;
         Ok(Lines::of(&self.document.text).range(&self.document.text, start.into(), end.into()))
     }
 
@@ -66,13 +66,13 @@ fn markdown(text: &str) -> Value {
     json!({ "kind": "markdown", "value": text })
 }
 
-pub(crate) fn hover(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn hover(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let byte = asked.byte(params.position)?;
     let Some(hover) = asked.view(|view| about::hover(view, byte)) else { return Ok(Value::Null) };
     Ok(json!({ "contents": markdown(&hover.text), "range": asked.converter().own(&hover.range) }))
 }
 
-pub(crate) fn completion(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn completion(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let byte = asked.byte(params.position)?;
     let found = asked.view(|view| completion::completion(view, byte));
     let range = asked.converter().own(&found.range);
@@ -105,7 +105,7 @@ fn kind_of_item(kind: ItemKind) -> u32 {
     }
 }
 
-pub(crate) fn signature(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn signature(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let byte = asked.byte(params.position)?;
     let Some(found) = asked.view(|view| completion::signature_at(view, byte)) else { return Ok(Value::Null) };
     let params: Vec<_> = found.params.iter().map(|label| json!({ "label": label })).collect();
@@ -113,7 +113,7 @@ pub(crate) fn signature(asked: &mut Asked<'_>, params: &Params) -> Result<Value,
     Ok(json!({ "signatures": [signature], "activeSignature": 0, "activeParameter": found.active }))
 }
 
-pub(crate) fn symbols(asked: &mut Asked<'_>, _: &Params) -> Result<Value, Refusal> {
+pub(crate) fn symbols(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
     let symbols = asked.view(outline::symbols);
     let mut converter = asked.converter();
     Ok(symbols.iter().map(|symbol| symbol_value(&mut converter, symbol)).collect())
@@ -135,7 +135,7 @@ fn symbol_value(converter: &mut Converter<'_>, symbol: &Symbol) -> Value {
     })
 }
 
-pub(crate) fn folds(asked: &mut Asked<'_>, _: &Params) -> Result<Value, Refusal> {
+pub(crate) fn folds(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
     let folds = asked.view(outline::folds);
     let (text, lines) = (&asked.document.text, Lines::of(&asked.document.text));
     let line = |byte: usize| lines.position(text, byte).line;
@@ -143,8 +143,8 @@ pub(crate) fn folds(asked: &mut Asked<'_>, _: &Params) -> Result<Value, Refusal>
     Ok(folds.iter().map(fold).collect())
 }
 
-pub(crate) fn selections(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
-    let positions = params.positions.clone().ok_or_else(|| Refusal::params("missing `positions`"))?;
+pub(crate) fn selections(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+    let positions = params.positions.clone().ok_or_else(|| RequestError::params("missing `positions`"))?;
     let bytes: Vec<_> = positions.into_iter().map(|at| asked.byte(Some(at))).collect::<Result<_, _>>()?;
     let nested: Vec<_> = asked.view(|view| bytes.iter().map(|byte| outline::selections(view, *byte)).collect());
     let mut converter = asked.converter();
@@ -157,7 +157,7 @@ pub(crate) fn selections(asked: &mut Asked<'_>, params: &Params) -> Result<Value
     Ok(nested.iter().map(&mut chain).collect())
 }
 
-pub(crate) fn hints(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn hints(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let range = asked.bytes(params.range)?;
     let hints = asked.view(inlay::hints);
     let (text, lines) = (&asked.document.text, Lines::of(&asked.document.text));
@@ -169,7 +169,7 @@ pub(crate) fn hints(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Ref
     Ok(shown.map(hint).collect())
 }
 
-pub(crate) fn lenses(asked: &mut Asked<'_>, _: &Params) -> Result<Value, Refusal> {
+pub(crate) fn lenses(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
     let runnables = asked.view(lens::runnables);
     let mut converter = asked.converter();
     let lens = |plan: &lens::Runnable| {
@@ -182,7 +182,7 @@ pub(crate) fn lenses(asked: &mut Asked<'_>, _: &Params) -> Result<Value, Refusal
     Ok(runnables.iter().flat_map(lens).collect())
 }
 
-pub(crate) fn fixes(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn fixes(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let range = asked.bytes(params.range)?;
     let only = params.context.as_ref().and_then(|context| context.get("only")).and_then(Value::as_array);
     if only.is_some_and(|only| !only.iter().filter_map(Value::as_str).any(|kind| "quickfix".starts_with(kind))) {
@@ -210,17 +210,17 @@ pub(crate) fn fixes(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Ref
     Ok(actions.into())
 }
 
-pub(crate) fn formatting(asked: &mut Asked<'_>, _: &Params) -> Result<Value, Refusal> {
+pub(crate) fn formatting(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
     Ok(asked.edits(layout::document(&asked.document.text)))
 }
 
-pub(crate) fn range_formatting(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn range_formatting(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let range = asked.bytes(params.range)?;
     let edits = asked.view(|view| layout::range(view, &range));
     Ok(asked.edits(edits))
 }
 
-pub(crate) fn tokens(asked: &mut Asked<'_>, _: &Params) -> Result<Value, Refusal> {
+pub(crate) fn tokens(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
     let tokens = asked.view(colours::tokens);
     let (text, lines) = (&asked.document.text, Lines::of(&asked.document.text));
     let mut data: Vec<u32> = Vec::with_capacity(5 * tokens.len());

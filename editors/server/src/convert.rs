@@ -7,7 +7,7 @@ use mdle_compiler::diagnostic::SourceId;
 use serde_json::{Value, json};
 
 use crate::documents::{Documents, Plan};
-use mdle_language_service::diagnostics::{Finding, Place};
+use mdle_language_service::diagnostics::{FileRange, Finding};
 use mdle_language_service::lines::{Lines, Position};
 
 /// Converts places in a plan's files to protocol objects. The lines of each file are determined only once.
@@ -41,18 +41,18 @@ impl<'d> Converter<'d> {
 
     /// Returns a range in the document of the plan itself.
     pub(crate) fn own(&mut self, range: &Range<usize>) -> Value {
-        self.range(&Place { source: self.plan.input.source, range: range.clone() })
+        self.range(&FileRange { source: self.plan.input.source, range: range.clone() })
     }
 
     /// Returns the range of a place in its file.
-    pub(crate) fn range(&mut self, place: &Place) -> Value {
+    pub(crate) fn range(&mut self, place: &FileRange) -> Value {
         let text = self.plan.input.sources.text(place.source);
         let lines = self.lines.entry(place.source).or_insert_with(|| Lines::of(text));
         range(text, lines, &place.range)
     }
 
     /// Returns the location of a place: its file and range.
-    pub(crate) fn location(&mut self, place: &Place) -> Option<Value> {
+    pub(crate) fn location(&mut self, place: &FileRange) -> Option<Value> {
         Some(json!({ "uri": self.uri(place.source)?, "range": self.range(place) }))
     }
 

@@ -27,19 +27,19 @@ pub(crate) struct Change {
 /// A range as a protocol object.
 #[derive(Debug, Clone, Copy, Deserialize)]
 pub(crate) struct Positions {
-    pub(crate) start: At,
-    pub(crate) end: At,
+    pub(crate) start: ProtocolPosition,
+    pub(crate) end: ProtocolPosition,
 }
 
 /// A position as a protocol object.
 #[derive(Debug, Clone, Copy, Deserialize)]
-pub(crate) struct At {
+pub(crate) struct ProtocolPosition {
     line: u32,
     character: u32,
 }
 
-impl From<At> for Position {
-    fn from(at: At) -> Self {
+impl From<ProtocolPosition> for Position {
+    fn from(at: ProtocolPosition) -> Self {
         Self { line: at.line, character: at.character }
     }
 }

@@ -4,14 +4,14 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use lsp_server::ErrorCode;
 
-use crate::params::Refusal;
+use crate::params::RequestError;
 
 /// Runs `work`; returns an internal error if it panics.
-pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, Refusal>) -> Result<T, Refusal> {
+pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, RequestError>) -> Result<T, RequestError> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|cause| {
         let text = cause.downcast_ref::<&str>().copied().map(str::to_owned);
         let text = text.or_else(|| cause.downcast_ref::<String>().cloned()).unwrap_or_default();
-        Err(Refusal { code: ErrorCode::InternalError, message: format!("a bug in mdlec: {text}") })
+        Err(RequestError { code: ErrorCode::InternalError, message: format!("a bug in mdlec: {text}") })
     })
 }
 
@@ -23,7 +23,7 @@ mod tests {
 
     #[test]
     fn a_panic_is_an_error_of_its_request_alone() {
-        let refused = guarded(|| -> Result<(), Refusal> { panic!("at {}", 7) }).unwrap_err();
+        let refused = guarded(|| -> Result<(), RequestError> { panic!("at {}", 7) }).unwrap_err();
         assert!(matches!(refused.code, ErrorCode::InternalError));
         assert_eq!(refused.message, "a bug in mdlec: at 7");
         assert_eq!(guarded(|| Ok(1)).ok(), Some(1));

@@ -4,16 +4,16 @@ use lsp_server::ErrorCode;
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::documents::{At, Positions};
+use crate::documents::{Positions, ProtocolPosition};
 
 /// An error as the answer to a request.
 #[derive(Debug)]
-pub(crate) struct Refusal {
+pub(crate) struct RequestError {
     pub(crate) code: ErrorCode,
     pub(crate) message: String,
 }
 
-impl Refusal {
+impl RequestError {
     /// Returns the error for a request whose parameters violate the protocol.
     pub(crate) fn params(message: &str) -> Self {
         Self { code: ErrorCode::InvalidParams, message: message.to_owned() }
@@ -35,9 +35,9 @@ impl Refusal {
 #[serde(rename_all = "camelCase")]
 pub(crate) struct Params {
     pub(crate) text_document: Named,
-    pub(crate) position: Option<At>,
+    pub(crate) position: Option<ProtocolPosition>,
     pub(crate) range: Option<Positions>,
-    pub(crate) positions: Option<Vec<At>>,
+    pub(crate) positions: Option<Vec<ProtocolPosition>>,
     pub(crate) new_name: Option<String>,
     pub(crate) context: Option<Value>,
 }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::ServeError;
 use crate::check;
 use crate::guard::guarded;
-use crate::params::Refusal;
+use crate::params::RequestError;
 use crate::server::{Server, send};
 
 impl Server<'_> {
@@ -23,7 +23,7 @@ impl Server<'_> {
         };
         match checked {
             Ok(checked) => self.keep(uri, checked),
-            Err(Refusal { message, .. }) => self.log(&format!("check of {uri}: {message}"))?,
+            Err(RequestError { message, .. }) => self.log(&format!("check of {uri}: {message}"))?,
         }
         if !self.stale.is_empty() {
             return Ok(());

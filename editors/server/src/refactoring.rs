@@ -11,8 +11,8 @@ use serde_json::{Value, json};
 use crate::answers::Asked;
 use crate::convert;
 use crate::documents::{Document, Documents, Plan};
-use crate::params::{Params, Refusal};
-use mdle_language_service::diagnostics::Place;
+use crate::params::{Params, RequestError};
+use mdle_language_service::diagnostics::FileRange;
 use mdle_language_service::lines::Lines;
 use mdle_language_service::rename::{self as names, Named};
 
@@ -21,12 +21,12 @@ type Definition = (PathBuf, Range<usize>);
 
 /// Returns the definition at a place in a plan's files. The result is the same for all files that use the definition.
 /// Returns `None` if the place is in an alphabet file.
-fn global(plan: &Plan, defined: &Place) -> Option<Definition> {
+fn global(plan: &Plan, defined: &FileRange) -> Option<Definition> {
     let path = plan.input.path(defined.source)?;
     Some((place(path).unwrap_or_else(|_| path.to_owned()), defined.range.clone()))
 }
 
-fn named(asked: &mut Asked<'_>, params: &Params) -> Result<Option<(Named, Definition)>, Refusal> {
+fn named(asked: &mut Asked<'_>, params: &Params) -> Result<Option<(Named, Definition)>, RequestError> {
     let byte = asked.byte(params.position)?;
     let named = asked.view(|view| names::named(view, byte));
     Ok(named.and_then(|named| {
@@ -35,7 +35,7 @@ fn named(asked: &mut Asked<'_>, params: &Params) -> Result<Option<(Named, Defini
     }))
 }
 
-pub(crate) fn definition(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn definition(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let byte = asked.byte(params.position)?;
     if let Some(used) = asked.view(|view| names::used_file(view, byte)) {
         let file = asked.document.path.parent().unwrap_or(Path::new("")).join(used);
@@ -46,14 +46,14 @@ pub(crate) fn definition(asked: &mut Asked<'_>, params: &Params) -> Result<Value
     Ok(found.and_then(|(named, _)| asked.converter().location(&named.defined)).unwrap_or_default())
 }
 
-pub(crate) fn highlights(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn highlights(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let Some((named, _)) = named(asked, params)? else { return Ok(Value::Null) };
     let places = asked.view(|view| names::references(view, |place| *place == named.defined));
     let mut converter = asked.converter();
     Ok(places.iter().map(|place| json!({ "range": converter.range(place) })).collect())
 }
 
-pub(crate) fn references(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn references(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let Some((_, definition)) = named(asked, params)? else { return Ok(Value::Null) };
     let declared = params.context.as_ref().and_then(|context| context.get("includeDeclaration"));
     let with_definition = declared.and_then(Value::as_bool).unwrap_or(true);
@@ -67,22 +67,22 @@ pub(crate) fn references(asked: &mut Asked<'_>, params: &Params) -> Result<Value
     Ok(locations.into())
 }
 
-pub(crate) fn prepare(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+pub(crate) fn prepare(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
     let Some((named, _)) = named(asked, params)? else { return Ok(Value::Null) };
     Ok(json!({ "range": asked.converter().range(&named.here), "placeholder": named.name }))
 }
 
-pub(crate) fn rename(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
-    let name = params.new_name.as_deref().ok_or_else(|| Refusal::params("missing `newName`"))?;
+pub(crate) fn rename(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+    let name = params.new_name.as_deref().ok_or_else(|| RequestError::params("missing `newName`"))?;
     if !names::is_name(name) {
-        return Err(Refusal::failed(format!("`{name}` is no name: letters, digits and `_`, and no keyword")));
+        return Err(RequestError::failed(format!("`{name}` is no name: letters, digits and `_`, and no keyword")));
     }
     let Some((named, definition)) = named(asked, params)? else {
-        return Err(Refusal::failed("only plans, parameters and labels can be renamed"));
+        return Err(RequestError::failed("only plans, parameters and labels can be renamed"));
     };
     let files = files_with(asked.documents, &definition);
     keeps_meanings(asked.documents, &files, name)
-        .map_err(|reason| Refusal::failed(format!("`{}` cannot become `{name}`: {reason}", named.name)))?;
+        .map_err(|reason| RequestError::failed(format!("`{}` cannot become `{name}`: {reason}", named.name)))?;
     let mut changes = BTreeMap::new();
     for (path, File { text, ranges, .. }) in files.iter().filter(|(_, file)| !file.ranges.is_empty()) {
         let lines = Lines::of(text);
@@ -139,7 +139,7 @@ fn seen(documents: &Documents, path: &Path, text: String, definition: &Definitio
             .collect();
         (all, names::meanings(view))
     });
-    let is_meant = |defined: &Place| global(&plan, defined).is_some_and(|found| found == *definition);
+    let is_meant = |defined: &FileRange| global(&plan, defined).is_some_and(|found| found == *definition);
     let meant: Vec<_> = all.iter().filter(|(_, defined)| is_meant(defined)).collect();
     if meant.is_empty() {
         return None;

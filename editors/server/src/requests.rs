@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use crate::answers::{self, Asked};
 use crate::documents::{Documents, is_alphabet};
-use crate::params::{Params, Refusal};
+use crate::params::{Params, RequestError};
 use crate::{commands, refactoring};
 use mdle_language_service::tokens;
 
@@ -38,13 +38,13 @@ pub(crate) fn capabilities() -> Value {
 }
 
 /// Returns the URI of the document that a request refers to.
-pub(crate) fn uri_of(params: &Value) -> Result<String, Refusal> {
+pub(crate) fn uri_of(params: &Value) -> Result<String, RequestError> {
     let uri = params.pointer("/textDocument/uri").and_then(Value::as_str);
-    uri.map(str::to_owned).ok_or_else(|| Refusal::params("missing `textDocument.uri`"))
+    uri.map(str::to_owned).ok_or_else(|| RequestError::params("missing `textDocument.uri`"))
 }
 
 /// A function that answers a request about a document.
-type Answer = fn(&mut Asked<'_>, &Params) -> Result<Value, Refusal>;
+type Answer = fn(&mut Asked<'_>, &Params) -> Result<Value, RequestError>;
 
 /// Returns the function that answers requests with this method; `None` if there is none.
 fn function(method: &str) -> Option<Answer> {
@@ -71,18 +71,18 @@ fn function(method: &str) -> Option<Answer> {
 }
 
 /// Answers a request.
-pub(crate) fn answer(documents: &Documents, method: &str, params: Value) -> Result<Value, Refusal> {
+pub(crate) fn answer(documents: &Documents, method: &str, params: Value) -> Result<Value, RequestError> {
     if method == "workspace/executeCommand" {
         return commands::execute(documents, &params);
     }
-    let unknown = || Refusal { code: ErrorCode::MethodNotFound, message: format!("mdlec has no `{method}`") };
+    let unknown = || RequestError { code: ErrorCode::MethodNotFound, message: format!("mdlec has no `{method}`") };
     let function = function(method).ok_or_else(unknown)?;
-    let params: Params = serde_json::from_value(params).map_err(|error| Refusal::params(&error.to_string()))?;
+    let params: Params = serde_json::from_value(params).map_err(|error| RequestError::params(&error.to_string()))?;
     let uri = &params.text_document.uri;
-    let document = documents.open.get(uri).ok_or_else(|| Refusal::unknown(uri))?;
+    let document = documents.open.get(uri).ok_or_else(|| RequestError::unknown(uri))?;
     if is_alphabet(&document.path) {
         return Ok(Value::Null);
     }
-    let plan = documents.plan_for_any(document).map_err(|error| Refusal::failed(error.to_string()))?;
+    let plan = documents.plan_for_any(document).map_err(|error| RequestError::failed(error.to_string()))?;
     function(&mut Asked { documents, uri, document, plan }, &params)
 }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use crate::ServeError;
 use crate::documents::Documents;
 use crate::guard::guarded;
-use crate::params::Refusal;
+use crate::params::RequestError;
 use crate::requests;
 
 /// Time without messages from the client after which a document is checked. It is shorter than the interval between two
@@ -146,7 +146,7 @@ impl Server<'_> {
     fn request(&mut self, request: Request) -> Result<(), ServeError> {
         let Request { id, method, params } = request;
         let answer = if self.is_shut_down {
-            Err(Refusal { code: ErrorCode::InvalidRequest, message: format!("`{method}` came after `shutdown`") })
+            Err(RequestError { code: ErrorCode::InvalidRequest, message: format!("`{method}` came after `shutdown`") })
         } else if method == "shutdown" {
             self.is_shut_down = true;
             Ok(Value::Null)
@@ -155,7 +155,7 @@ impl Server<'_> {
         };
         match answer {
             Ok(result) => send(self.connection, Response::new_ok(id, result)),
-            Err(Refusal { code, message }) => {
+            Err(RequestError { code, message }) => {
                 if matches!(code, ErrorCode::InternalError) {
                     self.log(&format!("{method}: {message}"))?;
                 }
@@ -168,7 +168,7 @@ impl Server<'_> {
         let Notification { method, params } = notification;
         match guarded(|| self.notified(&method, params)) {
             Ok(()) => Ok(()),
-            Err(Refusal { message, .. }) => self.log(&format!("{method}: {message}")),
+            Err(RequestError { message, .. }) => self.log(&format!("{method}: {message}")),
         }
     }
 

@@ -5,7 +5,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::documents::{Change, Document};
-use crate::params::Refusal;
+use crate::params::RequestError;
 use crate::server::Server;
 use crate::{requests, uri};
 
@@ -43,13 +43,13 @@ struct Versioned {
     version: i64,
 }
 
-fn read<T: DeserializeOwned>(params: Value) -> Result<T, Refusal> {
-    serde_json::from_value(params).map_err(|error| Refusal::params(&error.to_string()))
+fn read<T: DeserializeOwned>(params: Value) -> Result<T, RequestError> {
+    serde_json::from_value(params).map_err(|error| RequestError::params(&error.to_string()))
 }
 
 impl Server<'_> {
     /// Handles a notification.
-    pub(crate) fn notified(&mut self, method: &str, params: Value) -> Result<(), Refusal> {
+    pub(crate) fn notified(&mut self, method: &str, params: Value) -> Result<(), RequestError> {
         match method {
             "textDocument/didOpen" => {
                 let Text { uri, version, text } = read::<Opened>(params)?.document;
@@ -74,11 +74,16 @@ impl Server<'_> {
         Ok(())
     }
 
-    fn change(&mut self, Changed { document: Versioned { uri, version }, changes }: Changed) -> Result<(), Refusal> {
-        let document = self.documents.open.get_mut(&uri).ok_or_else(|| Refusal::unknown(&uri))?;
+    fn change(
+        &mut self,
+        Changed { document: Versioned { uri, version }, changes }: Changed,
+    ) -> Result<(), RequestError> {
+        let document = self.documents.open.get_mut(&uri).ok_or_else(|| RequestError::unknown(&uri))?;
         if version < document.version {
             let known = document.version;
-            return Err(Refusal::params(&format!("version {version} of `{uri}` came after version {known}: ignored")));
+            return Err(RequestError::params(&format!(
+                "version {version} of `{uri}` came after version {known}: ignored"
+            )));
         }
         document.version = version;
         document.change(changes);

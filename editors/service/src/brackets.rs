@@ -1,6 +1,6 @@
 //! Open brackets of an unfinished text, with the words that follow in each bracket.
 
-use crate::words::{Kind, Word};
+use crate::words::{Word, WordKind};
 
 /// Kind of an open bracket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,14 +100,16 @@ fn read_in<'t>(open: &mut Open<'t>, word: &Word<'t>) {
     let is_condition = open.bracket == Bracket::Condition;
     let begins = |name| Some(OpenCall { name, args: 0, is_condition });
     match (word.kind, &mut open.call) {
-        (Kind::Sign, _) if matches!(word.text, "<" | ">" | "=" | ",") => open.call = None,
-        (Kind::Name, _) if is_keyword(word.text) => open.call = None,
-        (Kind::Name, _) if open.last == "after" => open.call = None,
-        (Kind::Name, None) if open.bracket != Bracket::Plan || open.items > 0 => open.call = begins(word.text),
-        (Kind::Name | Kind::Number, Some(call)) if open.bracket != Bracket::Plan && open.bracket != Bracket::Body => {
+        (WordKind::Sign, _) if matches!(word.text, "<" | ">" | "=" | ",") => open.call = None,
+        (WordKind::Name, _) if is_keyword(word.text) => open.call = None,
+        (WordKind::Name, _) if open.last == "after" => open.call = None,
+        (WordKind::Name, None) if open.bracket != Bracket::Plan || open.items > 0 => open.call = begins(word.text),
+        (WordKind::Name | WordKind::Number, Some(call))
+            if open.bracket != Bracket::Plan && open.bracket != Bracket::Body =>
+        {
             call.args += 1;
         }
-        (Kind::Name, Some(_)) => open.call = begins(word.text),
-        (Kind::Name | Kind::Number | Kind::Opaque | Kind::Sign, _) => {}
+        (WordKind::Name, Some(_)) => open.call = begins(word.text),
+        (WordKind::Name | WordKind::Number | WordKind::Opaque | WordKind::Sign, _) => {}
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 pub use crate::brackets::OpenCall;
 use crate::brackets::{Bracket, Open, read};
-use crate::words::{Kind, Word, words};
+use crate::words::{Word, WordKind, words};
 
 /// Kind of word that may follow at the cursor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub fn context(text: &str, byte: usize) -> Context<'_> {
     let mut before: Option<Word<'_>> = None;
     for word in words(text) {
         // A bracket that ends at the cursor is complete; a name is still being typed.
-        let is_at_cursor = word.range.start >= byte || (word.range.end >= byte && word.kind != Kind::Sign);
+        let is_at_cursor = word.range.start >= byte || (word.range.end >= byte && word.kind != WordKind::Sign);
         if found.is_none() && is_at_cursor {
             found = Some(at_cursor(&stack, &word, byte));
             if stack.is_empty() {
@@ -65,21 +65,21 @@ pub fn context(text: &str, byte: usize) -> Context<'_> {
             }
             labels.clear();
         }
-        if word.kind == Kind::Opaque {
+        if word.kind == WordKind::Opaque {
             continue;
         }
-        if let (":", Some(name)) = (word.text, before.as_ref().filter(|name| name.kind == Kind::Name))
+        if let (":", Some(name)) = (word.text, before.as_ref().filter(|name| name.kind == WordKind::Name))
             && stack.last().is_some_and(|open| open.bracket != Bracket::Parameters)
         {
             labels.push(name.text);
         }
         let touches =
-            before.as_ref().is_some_and(|before| before.kind == Kind::Name && before.range.end == word.range.start);
+            before.as_ref().is_some_and(|before| before.kind == WordKind::Name && before.range.end == word.range.start);
         read(&mut stack, &word, touches);
         before = Some(word);
     }
     let mut found = found.unwrap_or_else(|| {
-        let end = Word { kind: Kind::Sign, text: "", range: byte..byte };
+        let end = Word { kind: WordKind::Sign, text: "", range: byte..byte };
         at_cursor(&stack, &end, byte)
     });
     found.labels = labels;
@@ -89,12 +89,12 @@ pub fn context(text: &str, byte: usize) -> Context<'_> {
 /// Returns the context of the cursor if it is before, in, or at the end of `word`.
 fn at_cursor<'t>(stack: &[Open<'t>], word: &Word<'t>, byte: usize) -> Context<'t> {
     let is_in = word.range.start < byte;
-    let typed = if is_in && word.kind == Kind::Name { word.range.start..byte } else { byte..byte };
+    let typed = if is_in && word.kind == WordKind::Name { word.range.start..byte } else { byte..byte };
     let call = call(stack);
     let expected = match word.kind {
-        Kind::Opaque if is_in && (word.range.end > byte || word.text.starts_with("//")) => Expected::Nothing,
-        Kind::Number if is_in => Expected::Unit,
-        Kind::Name | Kind::Number | Kind::Opaque | Kind::Sign => expected(stack),
+        WordKind::Opaque if is_in && (word.range.end > byte || word.text.starts_with("//")) => Expected::Nothing,
+        WordKind::Number if is_in => Expected::Unit,
+        WordKind::Name | WordKind::Number | WordKind::Opaque | WordKind::Sign => expected(stack),
     };
     let typed = if expected == Expected::Unit { unit_at(word, byte) } else { typed };
     Context { expected, typed, call, labels: Vec::new() }

@@ -6,7 +6,7 @@ use mdle_compiler::diagnostic::{Code, Diagnostic, Label, Severity, SourceId, Sou
 
 /// A place in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct FileRange {
     /// Identifier of the file.
     pub source: SourceId,
     /// Byte range in the file.
@@ -19,11 +19,11 @@ pub struct Finding {
     /// Code of the diagnostic.
     pub code: Code,
     /// Place of the error or warning.
-    pub place: Place,
+    pub place: FileRange,
     /// Message of the diagnostic, text at the place, and help; one line each.
     pub message: String,
     /// Places that explain the diagnostic, each with a text.
-    pub related: Vec<(Place, String)>,
+    pub related: Vec<(FileRange, String)>,
 }
 
 impl Finding {
@@ -36,9 +36,9 @@ impl Finding {
 
 /// Returns the place of a span.
 #[must_use]
-pub fn place(sources: &Sources, span: Span) -> Place {
+pub fn place(sources: &Sources, span: Span) -> FileRange {
     let (source, range) = sources.range(span);
-    Place { source, range }
+    FileRange { source, range }
 }
 
 /// Converts diagnostics to findings, at most as many as are shown to a user.

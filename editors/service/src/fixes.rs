@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use mdle_compiler::diagnostic::{Diagnostic, Sources};
 
-use crate::diagnostics::{Place, place};
+use crate::diagnostics::{FileRange, place};
 
 /// An edit that fixes the cause of a diagnostic.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -14,7 +14,7 @@ pub struct Fix {
     /// Index of the diagnostic in the list of all diagnostics.
     pub diagnostic: usize,
     /// Place of the text to replace.
-    pub place: Place,
+    pub place: FileRange,
     /// Text to insert.
     pub replacement: String,
 }
@@ -24,10 +24,10 @@ pub struct Fix {
 pub fn fixes(
     sources: &Sources,
     diagnostics: &[Diagnostic],
-    own: impl Fn(&Place) -> bool,
+    own: impl Fn(&FileRange) -> bool,
     range: &Range<usize>,
 ) -> Vec<Fix> {
-    let touches = |place: &Place| own(place) && place.range.start <= range.end && range.start <= place.range.end;
+    let touches = |place: &FileRange| own(place) && place.range.start <= range.end && range.start <= place.range.end;
     let concerned = diagnostics
         .iter()
         .enumerate()

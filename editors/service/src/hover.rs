@@ -10,7 +10,7 @@ use mdle_compiler::syntax::tree::{Condition, ConditionNode, Element, Plan, Prima
 
 use crate::mentions::{Mention, Role, inside, mentions, quark_name};
 use crate::view::View;
-use crate::words::{Kind, words};
+use crate::words::{WordKind, words};
 
 /// A text about a name or a number.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -69,7 +69,7 @@ const KEYWORDS: &[(&str, &str, &str)] = &[
 /// Returns the form and meaning of the keyword at a byte offset; `None` if there is none.
 fn keyword(text: &str, byte: usize) -> Option<Hover> {
     let mut near = words(text).take_while(|word| word.range.start <= byte);
-    let found = near.find(|word| word.range.end >= byte && word.kind == Kind::Name)?;
+    let found = near.find(|word| word.range.end >= byte && word.kind == WordKind::Name)?;
     let (_, form, meaning) = KEYWORDS.iter().find(|(name, ..)| *name == found.text)?;
     Some(Hover { range: found.range, text: format!("```text\n{form}\n```\n{meaning}") })
 }

@@ -7,7 +7,7 @@ use mdle_compiler::diagnostic::Span;
 use mdle_compiler::syntax::tree::{Element, Primary};
 use mdle_compiler::syntax::{Arena, parse};
 
-use crate::diagnostics::{Place, place};
+use crate::diagnostics::{FileRange, place};
 use crate::mentions::{Mention, Role, mentions};
 use crate::view::View;
 
@@ -15,9 +15,9 @@ use crate::view::View;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
     /// Place of the name in its definition.
-    pub defined: Place,
+    pub defined: FileRange,
     /// Place of the name at the byte offset.
-    pub here: Place,
+    pub here: FileRange,
     /// Name of the plan, parameter or label.
     pub name: String,
 }
@@ -40,7 +40,7 @@ pub fn used_file(view: &View<'_>, byte: usize) -> Option<String> {
 
 /// Returns the places of all names in the document whose definition `is_meant` accepts.
 #[must_use]
-pub fn references(view: &View<'_>, is_meant: impl Fn(&Place) -> bool) -> Vec<Place> {
+pub fn references(view: &View<'_>, is_meant: impl Fn(&FileRange) -> bool) -> Vec<FileRange> {
     let of_definition = |mention: &Mention<'_>| {
         view.range(mention.span).is_some() && mention.defined.is_some_and(|span| is_meant(&place(view.sources, span)))
     };

@@ -35,7 +35,7 @@ pub struct Compiled {
     /// Plan as a state machine.
     pub machine: fsm::Machine,
     /// Group and robot of the plan, if it was projected from the plan of a group.
-    pub part: Option<projection::Part>,
+    pub part: Option<projection::RobotPlan>,
 }
 
 impl Compiled {
@@ -179,7 +179,7 @@ fn stages(
 
 /// Removes advice with edits from the diagnostics of the plan of one robot of a group, because the edits refer to the
 /// text of this plan and not to the text of the group's plan.
-fn of_part(mut found: Vec<Diagnostic>, part: Option<&projection::Part>) -> Vec<Diagnostic> {
+fn of_part(mut found: Vec<Diagnostic>, part: Option<&projection::RobotPlan>) -> Vec<Diagnostic> {
     if part.is_some() {
         found.iter_mut().for_each(|diagnostic| diagnostic.help.retain(|help| help.edit.is_none()));
     }

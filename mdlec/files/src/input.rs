@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use mdle_compiler::alphabet::{Alphabet, nearest};
 use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources};
 use mdle_compiler::plan::Bounds;
-use mdle_compiler::projection::{Part, part_name, projected};
+use mdle_compiler::projection::{RobotPlan, part_name, projected};
 use mdle_compiler::rust::{self, Header};
 use mdle_compiler::syntax::tree::{Arg, Plan};
 use mdle_compiler::{Compiled, Limit, check_with, compile_bounded, compile_within, roots, syntax};
@@ -29,7 +29,7 @@ pub struct Input {
     /// Texts that are used instead of files.
     unsaved: Unsaved,
     /// Plans of single robots that the last compilation derived from the plans of groups.
-    parts: Vec<Part>,
+    parts: Vec<RobotPlan>,
     /// `true` if the files that the plan uses must not be read.
     is_alone: bool,
 }

@@ -98,7 +98,7 @@ pub(super) enum Command {
     /// `mdlec` becomes the executable: its exit status and its signals are those of the run. The executable stays where
     /// `mdlec build` writes it. The file `mdle.toml` beside the plan may name `target`, `world` and, in the table
     /// `options`, options of runs, such as `speed = "max"`; those of the command line win.
-    Run(Run),
+    Run(RunArguments),
     /// Check plans and report their errors
     ///
     /// Reports all errors and warnings of a file in one run, each with its place and, where possible, a correction to
@@ -193,9 +193,9 @@ pub(super) struct Bare {
 
 /// Arguments of `mdlec run`.
 #[derive(Debug, Args)]
-pub(super) struct Run {
+pub(super) struct RunArguments {
     #[command(flatten)]
-    pub(super) executable: Executable,
+    pub(super) executable: ExecutableArguments,
     /// Arguments for the executable; `-- --help` lists them
     #[arg(last = true)]
     pub(super) args: Vec<String>,
@@ -205,7 +205,7 @@ pub(super) struct Run {
 #[derive(Debug, Args)]
 pub(super) struct Build {
     #[command(flatten)]
-    pub(super) executable: Executable,
+    pub(super) executable: ExecutableArguments,
     /// Intermediate form to print instead of building
     ///
     /// One of tree, plan, nondegenerate, expanded, fsm, matrices, dot, mermaid, scxml, formal, rust and exe. Without
@@ -225,7 +225,7 @@ pub(super) struct Build {
 
 /// The plan that an executable is built of, and for which robot.
 #[derive(Debug, Args)]
-pub(super) struct Executable {
+pub(super) struct ExecutableArguments {
     /// File of the plan, or of a scenario (FILE.toml); `-` for standard input
     #[arg(required = true)]
     pub(super) plan: Option<PathBuf>,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::compiled::{compile_one, needs_target};
 use super::executable::{self, Runnable};
-use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices, report, scenario};
+use super::{Bare, Build, Emit, EmitKind, ExecutableArguments, Failure, endings, matrices, report, scenario};
 use crate::link;
 use mdle_compiler::syntax::outline;
 use mdle_compiler::{Limit, fsm, picture, rust, syntax};
@@ -88,7 +88,7 @@ fn limit(kind: EmitKind) -> Limit {
 }
 
 /// Returns the plan's text in the form `kind`, and the files that were read.
-fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
+fn stage(options: &ExecutableArguments, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
     let settings = Settings::beside(path)?;
     let target = settings.target(options.target.as_deref())?;
     let mut input = read_plan(path, &target)?;
@@ -125,7 +125,7 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
 }
 
 /// Checks the plan of a group, and returns the plans of its robots as text.
-fn projected(input: &mut Input, target: &Target, options: &Executable) -> Result<String, Failure> {
+fn projected(input: &mut Input, target: &Target, options: &ExecutableArguments) -> Result<String, Failure> {
     let wanted = options.name.as_deref();
     if let Some(name) = wanted {
         input.must_have(name)?;

@@ -8,13 +8,13 @@ use std::time::Instant;
 use super::compiled::{Emitted, emitted, needs_target};
 use super::progress::{ProgressOutput, build_package};
 use super::version::version;
-use super::{EmitKind, Executable, Failure, Run, endings, scenario};
+use super::{EmitKind, ExecutableArguments, Failure, RunArguments, endings, scenario};
 use crate::link::{self, Entry, Package, TargetCrate};
 use mdle_compiler::rust;
 use mdle_files::{RunOption, SafetyEntry, Settings};
 
 /// Builds the executable of a plan, and replaces this process by it.
-pub(super) fn run(options: &Run) -> Result<(), Failure> {
+pub(super) fn run(options: &RunArguments) -> Result<(), Failure> {
     let path = begin(&options.executable)?;
     let output = options.executable.output.clone();
     if let Some(output) = &output {
@@ -26,7 +26,7 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
 
 /// Checks the `mdle.toml` beside a plan before the build: the options that it adds to a run with the arguments `args`
 /// must be valid, and it must not name safety rules, which an executable does not support.
-pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), Failure> {
+pub(super) fn settings_fit(options: &ExecutableArguments, args: &[String]) -> Result<(), Failure> {
     // A scenario takes no options from an `mdle.toml`.
     let Some(path) = options.plan.as_ref().filter(|path| !scenario::is_scenario(path)) else { return Ok(()) };
     let settings = Settings::beside(path)?;
@@ -39,7 +39,7 @@ pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), 
 }
 
 /// Installs the signal handlers of `take_signals`, and returns the file of the plan.
-pub(super) fn begin(options: &Executable) -> Result<&Path, Failure> {
+pub(super) fn begin(options: &ExecutableArguments) -> Result<&Path, Failure> {
     take_signals()?;
     options.plan.as_deref().ok_or_else(|| Failure::usage("no plan was given"))
 }
@@ -60,7 +60,7 @@ pub(super) struct Runnable {
 /// Builds the executable of the plan in `path`. By default, the executable is for this machine and in the current
 /// folder.
 pub(super) fn build(
-    options: &Executable,
+    options: &ExecutableArguments,
     path: &Path,
     output: Option<PathBuf>,
     machine: Option<&str>,

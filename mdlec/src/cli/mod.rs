@@ -34,8 +34,8 @@ mod words;
 use std::process::ExitCode;
 
 use arguments::{
-    Analyze, Bare, Bind, Build, Check, Cli, Color, Command, Completions, Decompile, Draw, Emulator, Executable, Fmt,
-    Man, MessageFormat, NewTarget, Run, Trace, TraceMachine,
+    Analyze, Bare, Bind, Build, Check, Cli, Color, Command, Completions, Decompile, Draw, Emulator,
+    ExecutableArguments, Fmt, Man, MessageFormat, NewTarget, RunArguments, Trace, TraceMachine,
 };
 use clap::{CommandFactory as _, FromArgMatches as _, ValueEnum as _};
 use emit::{Emit, EmitKind};

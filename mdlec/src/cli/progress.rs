@@ -7,7 +7,7 @@ use std::time::Instant;
 use mdle_runtime::Printable;
 
 use super::{Failure, report};
-use crate::link::{self, Built, Cache, Package, Progress};
+use crate::link::{self, BuildStep, Built, Cache, Package};
 
 /// Builds a package, shows the progress, and prints a note about the executable. `target` is the folder of a
 /// third-party target.
@@ -51,7 +51,7 @@ pub(super) struct ProgressOutput {
 }
 
 impl ProgressOutput {
-    pub(super) fn progress(&mut self, progress: &Progress) {
+    pub(super) fn progress(&mut self, progress: &BuildStep) {
         if report::is_json() {
             return;
         }

@@ -10,7 +10,7 @@ pub(super) use mdle::is_scenario;
 use super::compiled::needs_target;
 use super::progress::build_package;
 use super::version::version;
-use super::{Executable, Failure, report};
+use super::{ExecutableArguments, Failure, report};
 use crate::link::{Entry, Package, TargetCrate};
 use mdle_files::{Settings, target};
 
@@ -19,7 +19,7 @@ pub(super) const SIM: &str = "sim";
 
 /// Builds the executable of the scenario in the file at `path`, and returns the path of the executable.
 pub(super) fn build(
-    options: &Executable,
+    options: &ExecutableArguments,
     path: &Path,
     output: Option<PathBuf>,
     machine: Option<&str>,
@@ -57,7 +57,7 @@ fn files(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
 }
 
 /// Refuses options that only a single plan supports, and robots other than the simulated one.
-fn must_fit(options: &Executable, path: &Path) -> Result<(), Failure> {
+fn must_fit(options: &ExecutableArguments, path: &Path) -> Result<(), Failure> {
     let settings = Settings::beside(path)?;
     needs_target(settings.names_target(options.target.as_deref()))?;
     let robot = settings.name_of_target(options.target.as_deref()).unwrap_or_default();

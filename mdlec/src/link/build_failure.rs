@@ -4,7 +4,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 
 use super::cargo::Job;
-use super::messages::{Complaint, NO_LINKER, Run};
+use super::messages::{CargoResult, Complaint, NO_LINKER};
 use super::target::Dependencies;
 use super::{LinkError, TargetCrate};
 
@@ -15,7 +15,12 @@ const NETWORK: &str = "spurious network error";
 const LINKER: [&str; 2] = [NO_LINKER, "error: linking with `"];
 
 /// Returns the error that explains why a run of cargo ended without an executable.
-pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependencies: &Dependencies) -> LinkError {
+pub(super) fn fault(
+    job: &Job<'_>,
+    run: &CargoResult,
+    target: &TargetCrate<'_>,
+    dependencies: &Dependencies,
+) -> LinkError {
     let text = run.text();
     if run.lacks_room() {
         return LinkError::DiskFull(job.cache.folder().to_owned());
@@ -73,7 +78,7 @@ fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
 /// does not compile.
 fn others(
     job: &Job<'_>,
-    run: &Run,
+    run: &CargoResult,
     target: &TargetCrate<'_>,
     text: &str,
     log: PathBuf,

@@ -13,7 +13,7 @@ use std::{env, process};
 use etcetera::BaseStrategy;
 
 use super::access::{self, Private};
-use super::{LinkError, Progress};
+use super::{BuildStep, LinkError};
 
 /// The cache, a folder that mdlec keeps between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -88,7 +88,7 @@ impl Cache {
     }
 
     /// Waits until no other mdlec uses the cache, and locks it until the returned file is closed.
-    pub(super) fn lock(&self, progress: &mut dyn FnMut(Progress)) -> Result<File, LinkError> {
+    pub(super) fn lock(&self, progress: &mut dyn FnMut(BuildStep)) -> Result<File, LinkError> {
         let path = self.folder.join("lock");
         let failed = |error| LinkError::cache(&path, error);
         let mut options = File::options();
@@ -97,7 +97,7 @@ impl Cache {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
                 let holder = fs::read_to_string(&path).ok().and_then(|text| text.trim_end().parse().ok());
-                progress(Progress::Waiting(holder));
+                progress(BuildStep::Waiting(holder));
                 file.lock().map_err(failed)?;
             }
             Err(TryLockError::Error(error)) => return Err(failed(error)),

@@ -5,9 +5,9 @@ use std::os::unix::process::ExitStatusExt;
 
 use super::cache::remove;
 use super::cargo::Job;
-use super::messages::{Complaint, NO_LINKER, Run};
+use super::messages::{CargoResult, Complaint, NO_LINKER};
 use super::plan_package::PlanPackage;
-use super::{LinkError, Progress, TargetCrate, build_record};
+use super::{BuildStep, LinkError, TargetCrate, build_record};
 
 /// Message of rustc about a library that is missing or empty.
 const ABSENT: &str = "can't find crate for `";
@@ -44,7 +44,7 @@ pub(super) enum Damage {
 }
 
 /// Returns the part of the cache that is damaged according to a run of cargo; `None` if there is no sign of damage.
-pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Option<Damage> {
+pub(super) fn found(job: &Job<'_>, run: &CargoResult, target: &TargetCrate<'_>) -> Option<Damage> {
     if run.status.success() {
         let stored = run.executable.as_ref().filter(|executable| executable.fresh)?;
         return (!build_record::fits(job.plan, &stored.path)).then_some(Damage::Executable);
@@ -83,11 +83,11 @@ fn is_forgotten(complaint: &Complaint, target: &TargetCrate<'_>) -> bool {
 }
 
 /// Removes the damaged part, so that the next run of cargo builds it again.
-pub(super) fn clear(damage: Damage, job: &Job<'_>, progress: &mut dyn FnMut(Progress)) -> Result<(), LinkError> {
+pub(super) fn clear(damage: Damage, job: &Job<'_>, progress: &mut dyn FnMut(BuildStep)) -> Result<(), LinkError> {
     match damage {
         Damage::Executable => job.clean(),
         Damage::Libraries => {
-            progress(Progress::Mending);
+            progress(BuildStep::Mending);
             remove(&job.cache.target())
         }
     }

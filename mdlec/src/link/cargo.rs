@@ -6,12 +6,12 @@ use std::ffi::OsString;
 use std::process::{Command, Stdio};
 
 use super::guard::Guard;
-use super::machine::Machine;
-use super::messages::{self, Run};
+use super::machine::BuildMachine;
+use super::messages::{self, CargoResult};
 use super::plan_package::PlanPackage;
 use super::seal::Seal;
 use super::toolchain::{self, cargo_home, output, unusable};
-use super::{Cache, LinkError, Progress, cleanup};
+use super::{BuildStep, Cache, LinkError, cleanup};
 
 /// Settings of the profile for cargo's `--config`, which neither a configuration file nor the environment can
 /// override. Executables rely on these settings.
@@ -38,23 +38,28 @@ const PROFILE: [&str; 13] = [
 #[derive(Debug)]
 pub(super) struct Job<'a> {
     pub(super) cache: &'a Cache,
-    pub(super) machine: &'a Machine,
+    pub(super) machine: &'a BuildMachine,
     pub(super) plan: &'a PlanPackage,
 }
 
 impl Job<'_> {
     /// Builds the package, without the network if possible.
-    pub(super) fn build(&self, seal: &mut Seal, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
+    pub(super) fn build(&self, seal: &mut Seal, progress: &mut dyn FnMut(BuildStep)) -> Result<CargoResult, LinkError> {
         let run = self.attempt(false, seal, progress)?;
         if !run.lacks_libraries() {
             return Ok(run);
         }
-        progress(Progress::Fetching);
+        progress(BuildStep::Fetching);
         self.attempt(true, seal, progress)
     }
 
     /// Builds the package once; fetches missing libraries if `online` is `true`.
-    fn attempt(&self, online: bool, seal: &mut Seal, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
+    fn attempt(
+        &self,
+        online: bool,
+        seal: &mut Seal,
+        progress: &mut dyn FnMut(BuildStep),
+    ) -> Result<CargoResult, LinkError> {
         let mut command = self.command("build");
         command
             .arg("--message-format=json")

@@ -67,31 +67,31 @@ fn end(signal: i32, farewell: impl FnOnce()) {
 
 /// An entry of the list `UNFINISHED`. The entry is removed from the list when this value is dropped.
 #[derive(Debug)]
-pub(super) struct Watched(Unfinished);
+pub(super) struct UnfinishedEntry(Unfinished);
 
-impl Drop for Watched {
+impl Drop for UnfinishedEntry {
     fn drop(&mut self) {
         list().retain(|what| *what != self.0);
     }
 }
 
 /// Starts a child process in the group of `guard`; a signal ends it together with all its children.
-pub(super) fn spawn(command: &mut Command, guard: &Guard) -> io::Result<(Child, Watched)> {
+pub(super) fn spawn(command: &mut Command, guard: &Guard) -> io::Result<(Child, UnfinishedEntry)> {
     let mut unfinished = list();
     let group = guard.group();
     let child = command.process_group(group.as_raw_nonzero().get()).spawn()?;
     let entry = Unfinished::Child { process: Pid::from_child(&child), group };
     unfinished.push(entry.clone());
-    Ok((child, Watched(entry)))
+    Ok((child, UnfinishedEntry(entry)))
 }
 
-/// Creates a file. A signal that ends this process removes it, unless the returned [`Watched`] was dropped before.
-pub(super) fn create(path: &Path) -> io::Result<(File, Watched)> {
+/// Creates a file. A signal that ends this process removes it, unless the returned [`UnfinishedEntry`] was dropped before.
+pub(super) fn create(path: &Path) -> io::Result<(File, UnfinishedEntry)> {
     let mut unfinished = list();
     let file = File::create_new(path)?;
     let path = Unfinished::File(path.to_owned());
     unfinished.push(path.clone());
-    Ok((file, Watched(path)))
+    Ok((file, UnfinishedEntry(path)))
 }
 
 /// Locks the list. The list is valid even if another thread panicked while holding the lock.

@@ -8,7 +8,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::Path;
 
 use super::cache::remove;
-use super::{Cache, LinkError, Progress, sources};
+use super::{BuildStep, Cache, LinkError, sources};
 
 /// Name of the file that a running mdlec locks. The file is not removed, so that all processes wait for the
 /// same file.
@@ -24,7 +24,7 @@ const OWN: [&str; 6] = ["cargo", "compiled", "compiled.new", "target", "tmp", "p
 /// # Errors
 /// Fails and changes nothing if the folder is not a cache: it contains a file that mdlec did not write, or no lock
 /// file. Also fails if the system refuses.
-pub fn clear(folder: &Path, progress: &mut dyn FnMut(Progress)) -> Result<u64, LinkError> {
+pub fn clear(folder: &Path, progress: &mut dyn FnMut(BuildStep)) -> Result<u64, LinkError> {
     // This check comes before any change, even a change of permissions.
     let Some(found) = contents(folder)? else { return Ok(0) };
     if found.is_empty() {

@@ -22,14 +22,14 @@ const OWN_LINKER: &str = "rust-lld";
 
 /// A machine for which executables are built.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Machine {
+pub(super) struct BuildMachine {
     /// Target triple of the machine.
     pub(super) triple: String,
     /// `true` if it is not the machine on which the build runs.
     is_foreign: bool,
 }
 
-impl Machine {
+impl BuildMachine {
     /// Returns the machine on which the build runs, which has this target triple.
     pub(super) fn host(triple: &str) -> Self {
         Self { triple: triple.to_owned(), is_foreign: false }
@@ -117,11 +117,11 @@ fn is_offered_by_rustup(triple: &str) -> bool {
 mod tests {
     use std::fs;
 
-    use super::Machine;
+    use super::BuildMachine;
     use crate::link::tests::folder;
 
-    fn machine(triple: &str, is_foreign: bool) -> Machine {
-        Machine { triple: triple.to_owned(), is_foreign }
+    fn machine(triple: &str, is_foreign: bool) -> BuildMachine {
+        BuildMachine { triple: triple.to_owned(), is_foreign }
     }
 
     #[test]

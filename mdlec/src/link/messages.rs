@@ -10,7 +10,7 @@ use std::thread;
 use serde::Deserialize;
 use signal_hook::consts::SIGXFSZ;
 
-use super::Progress;
+use super::BuildStep;
 use super::seal::Seal;
 
 /// Messages of the system, reported by rustc or the linker, when a disk is full or a file is too large.
@@ -25,7 +25,7 @@ const BLOCKED: &[u8] = b"Blocking waiting for file lock";
 
 /// Result of a run of cargo.
 #[derive(Debug)]
-pub(super) struct Run {
+pub(super) struct CargoResult {
     /// Exit status of cargo.
     pub(super) status: ExitStatus,
     /// `true` if cargo was allowed to use the network.
@@ -61,7 +61,7 @@ pub(super) struct Complaint {
     pub(super) text: String,
 }
 
-impl Run {
+impl CargoResult {
     /// Returns `true` if the run ended because cargo was not allowed to fetch something. In this case cargo's message
     /// names the option `--offline`.
     pub(super) fn lacks_libraries(&self) -> bool {
@@ -104,8 +104,8 @@ pub(super) fn follow(
     online: bool,
     plan: &Path,
     seal: &mut Seal,
-    progress: &mut dyn FnMut(Progress),
-) -> io::Result<Run> {
+    progress: &mut dyn FnMut(BuildStep),
+) -> io::Result<CargoResult> {
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     let (sender, heard) = mpsc::channel();
     // Both pipes must be read at the same time, because cargo blocks while a pipe is full.
@@ -126,7 +126,7 @@ pub(super) fn follow(
         Log { plan, seal, executable: None, complaints: Vec::new(), artifacts: 0, reused: false, compiled: 0 };
     for heard in heard {
         match heard {
-            CargoLine::Blocked => progress(Progress::Blocked),
+            CargoLine::Blocked => progress(BuildStep::Blocked),
             // Lines that are not messages, such as those of a compiler wrapper, are ignored.
             CargoLine::Message(line) => {
                 if let Ok(line) = serde_json::from_slice(&line) {
@@ -139,7 +139,7 @@ pub(super) fn follow(
     let stderr = stderr.join().unwrap_or_default();
     let began = log.artifacts > 0 || !log.complaints.is_empty();
     let Log { reused, executable, complaints, .. } = log;
-    Ok(Run { status, online, began, reused, executable, complaints, stderr })
+    Ok(CargoResult { status, online, began, reused, executable, complaints, stderr })
 }
 
 /// Passes each line to `take`, until there are no more lines, reading fails, or `take` returns `false`.
@@ -165,7 +165,7 @@ struct Log<'a> {
 }
 
 impl Log<'_> {
-    fn take(&mut self, line: CargoMessage, progress: &mut dyn FnMut(Progress)) {
+    fn take(&mut self, line: CargoMessage, progress: &mut dyn FnMut(BuildStep)) {
         match line {
             CargoMessage::Artifact { manifest_path, target, filenames, executable, fresh } => {
                 self.artifacts += 1;
@@ -181,7 +181,7 @@ impl Log<'_> {
                 }
                 if !fresh && !is_script {
                     self.compiled += 1;
-                    progress(Progress::Compiling(self.compiled));
+                    progress(BuildStep::Compiling(self.compiled));
                 }
             }
             CargoMessage::Message { manifest_path, message } => self.complaints.push(Complaint {

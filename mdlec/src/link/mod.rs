@@ -57,13 +57,13 @@ pub use clear::clear;
 pub use error::LinkError;
 pub use ignored::ignored_configuration;
 pub use output::{must_not_be_read, write_whole};
-pub use progress::Progress;
+pub use progress::BuildStep;
 pub use sources::{emulators, known};
 pub use target::TargetCrate;
 
 use cargo::Job;
-use machine::Machine;
-use messages::{Executable, Run};
+use machine::BuildMachine;
+use messages::{CargoResult, Executable};
 use output::Destination;
 use seal::Seal;
 use sources::Sources;
@@ -119,13 +119,13 @@ pub fn build(
     cache: &Cache,
     package: &Package<'_>,
     output: &Path,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(BuildStep),
 ) -> Result<Built, LinkError> {
     let destination = Destination::check(output, package.inputs)?;
     package.target.must_not_lose(output)?;
     let locked = cache.lock(progress)?;
     let toolchain = Toolchain::find()?;
-    let machine = Machine::find(package.machine, &toolchain.host)?;
+    let machine = BuildMachine::find(package.machine, &toolchain.host)?;
     let sources = Sources::unpack(cache)?;
     let dependencies = match package.entry {
         Entry::Plan(_) => target::dependencies(package.target, &sources)?,
@@ -155,9 +155,9 @@ pub struct Emulator {
 ///
 /// # Errors
 /// Fails if this machine lacks something that a build needs, or if `robot` has no emulator.
-pub fn emulator(cache: &Cache, robot: &str, progress: &mut dyn FnMut(Progress)) -> Result<Emulator, LinkError> {
+pub fn emulator(cache: &Cache, robot: &str, progress: &mut dyn FnMut(BuildStep)) -> Result<Emulator, LinkError> {
     let locked = cache.lock(progress)?;
-    let machine = Machine::host(&Toolchain::find()?.host);
+    let machine = BuildMachine::host(&Toolchain::find()?.host);
     let sources = Sources::unpack(cache)?;
     let dependencies = target::emulator_dependencies(robot, &sources)?;
     let crate_name: String = dependencies.packages.iter().map(|(package, _)| package.replace('-', "_")).collect();
@@ -173,7 +173,7 @@ fn make(
     job: &Job<'_>,
     target: &TargetCrate<'_>,
     dependencies: &Dependencies,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(BuildStep),
 ) -> Result<Executable, LinkError> {
     let run = run(job, target, progress)?;
     match &run.executable {
@@ -186,7 +186,7 @@ fn make(
 }
 
 /// Runs cargo. If the result shows damage in the cache, removes the damaged part and runs cargo again.
-fn run(job: &Job<'_>, target: &TargetCrate<'_>, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
+fn run(job: &Job<'_>, target: &TargetCrate<'_>, progress: &mut dyn FnMut(BuildStep)) -> Result<CargoResult, LinkError> {
     let mut mended = Vec::new();
     let mut seal = Seal::check(job.cache, progress)?;
     loop {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::cache::{remove, write_if_changed};
 use super::hash::hash;
-use super::machine::Machine;
+use super::machine::BuildMachine;
 use super::plan_package::PlanPackage;
 use super::target::{Dependencies, utf8};
 use super::toolchain::Toolchain;
@@ -17,7 +17,7 @@ pub(super) fn write(
     package: &Package<'_>,
     dependencies: &Dependencies,
     toolchain: &Toolchain,
-    machine: &Machine,
+    machine: &BuildMachine,
 ) -> Result<PlanPackage, LinkError> {
     let main = main(package, &version(package, dependencies, toolchain));
     let name = name(package, &main, &dependencies.identity, &machine.triple);
@@ -145,7 +145,7 @@ mod tests {
 
     use super::super::tests::cache;
     use super::super::{Cache, Entry, Package, TargetCrate, build_record};
-    use super::{Dependencies, Machine, PlanPackage, Toolchain, manifest};
+    use super::{BuildMachine, Dependencies, PlanPackage, Toolchain, manifest};
 
     const HOST: &str = "x86_64-unknown-linux-gnu";
     const TARGET: TargetCrate<'static> = TargetCrate::Builtin { name: "sim", crate_name: "mdle_sim" };
@@ -178,7 +178,8 @@ mod tests {
     }
 
     fn write(cache: &Cache, plan_file: &str, rust: &str) -> PlanPackage {
-        super::write(cache, &package(plan_file, rust), &dependencies(), &toolchain(), &Machine::host(HOST)).unwrap()
+        super::write(cache, &package(plan_file, rust), &dependencies(), &toolchain(), &BuildMachine::host(HOST))
+            .unwrap()
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::fmt;
 
 /// A step of a build. A build that compiles only the plan reports no steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Progress {
+pub enum BuildStep {
     /// Another mdlec is building; the field is the number of its process, if it is known. This build continues
     /// afterwards.
     Waiting(Option<u32>),
@@ -20,7 +20,7 @@ pub enum Progress {
     Compiling(usize),
 }
 
-impl Progress {
+impl BuildStep {
     /// Returns `true` for the first report of a step, and `false` for further reports of the step with a higher number.
     #[must_use]
     pub fn is_first(&self) -> bool {
@@ -36,7 +36,7 @@ impl Progress {
     }
 }
 
-impl fmt::Display for Progress {
+impl fmt::Display for BuildStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Waiting(None) => f.write_str("waiting for another mdlec to finish its build"),

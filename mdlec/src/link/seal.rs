@@ -17,7 +17,7 @@ use std::thread;
 
 use super::cache::{remove, write_if_changed};
 use super::hash::hash;
-use super::{Cache, LinkError, Progress};
+use super::{BuildStep, Cache, LinkError};
 
 /// Name of the list in the cache.
 const LIST: &str = "compiled";
@@ -34,7 +34,7 @@ pub(super) struct Seal {
 impl Seal {
     /// Reads the list, and removes each compiled file that does not match it. Must be called with the cache
     /// locked.
-    pub(super) fn check(cache: &Cache, progress: &mut dyn FnMut(Progress)) -> Result<Self, LinkError> {
+    pub(super) fn check(cache: &Cache, progress: &mut dyn FnMut(BuildStep)) -> Result<Self, LinkError> {
         let (target, list) = (cache.target(), cache.folder().join(LIST));
         let text = fs::read_to_string(&list).unwrap_or_default();
         // A file that was compiled again is listed again: its last line counts.
@@ -51,7 +51,7 @@ impl Seal {
         let (good, bad): (Vec<_>, Vec<_>) = files.iter().zip(seal.fit(&files)).partition(|(_, fits)| *fits);
         // Files that an interrupted build compiled are not listed, and are not damage.
         if bad.iter().any(|(file, _)| seal.listed(file).is_some()) {
-            progress(Progress::Discarding);
+            progress(BuildStep::Discarding);
         }
         bad.iter().try_for_each(|(file, _)| remove(file))?;
         let good = good.iter().filter_map(|(file, _)| Some((seal.name(file)?.to_owned(), seal.listed(file)?.clone())));
@@ -168,7 +168,7 @@ mod tests {
 
     use super::super::Cache;
     use super::super::tests::cache;
-    use super::{Progress, Seal};
+    use super::{BuildStep, Seal};
 
     /// Writes files like those of cargo, and records all of them in the list.
     fn sealed(test: &str) -> (Cache, [PathBuf; 4]) {
@@ -248,7 +248,7 @@ mod tests {
     #[test]
     fn a_file_that_was_compiled_again_has_its_new_hash() {
         let (cache, files) = sealed("seal_again");
-        let mut seal = Seal::check(&cache, &mut |_: Progress| {}).unwrap();
+        let mut seal = Seal::check(&cache, &mut |_: BuildStep| {}).unwrap();
         fs::write(&files[0], "again").unwrap();
         seal.add(&files[..1], false);
         assert!(!differs(&cache) && files[0].exists());

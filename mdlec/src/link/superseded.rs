@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::cache::{remove, write_if_changed};
 use super::hash::hash;
-use super::machine::Machine;
+use super::machine::BuildMachine;
 use super::plan_package::PlanPackage;
 use super::{Cache, LinkError};
 
@@ -21,7 +21,7 @@ const OWNER: &str = "owner";
 pub(super) fn remove_before(
     cache: &Cache,
     plan_file: &Path,
-    machine: &Machine,
+    machine: &BuildMachine,
     package: &PlanPackage,
 ) -> Result<(), LinkError> {
     let file = plan_file.canonicalize().unwrap_or_else(|_| plan_file.to_owned());

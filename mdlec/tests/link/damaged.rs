@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, SystemTime};
 
-use mdlec::link::{LinkError, Progress};
+use mdlec::link::{BuildStep, LinkError};
 
 use crate::robot::{MANIFEST, PLAN, ROVER, Robot, target};
 
@@ -48,7 +48,7 @@ fn assert_mends(robot: &Robot, cause: &str, restore: impl FnOnce()) {
         return assert_builds(robot, cause);
     }
     let mut leave = |progress| {
-        if progress == Progress::Mending {
+        if progress == BuildStep::Mending {
             // `resume_unwind` prints no message, because this is not a failure.
             panic::resume_unwind(Box::new(progress));
         }
@@ -60,7 +60,7 @@ fn assert_mends(robot: &Robot, cause: &str, restore: impl FnOnce()) {
     let ended = panic::catch_unwind(AssertUnwindSafe(|| robot.build_with("nap.mdle", &rust, &mut leave)));
     restore();
     fs::write(list, listed).unwrap();
-    assert_eq!(ended.unwrap_err().downcast_ref(), Some(&Progress::Mending));
+    assert_eq!(ended.unwrap_err().downcast_ref(), Some(&BuildStep::Mending));
 }
 
 /// Returns the files below `folder` whose names `wanted` accepts.

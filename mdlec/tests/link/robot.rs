@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use mdlec::link::{Built, Cache, Entry, LinkError, Package, Progress, TargetCrate, build};
+use mdlec::link::{BuildStep, Built, Cache, Entry, LinkError, Package, TargetCrate, build};
 
 pub(crate) const PLAN: &str = include_str!("plan.rs");
 
@@ -65,7 +65,7 @@ impl Robot {
         &self,
         plan: &str,
         rust: &str,
-        progress: &mut dyn FnMut(Progress),
+        progress: &mut dyn FnMut(BuildStep),
     ) -> Result<(Built, PathBuf), LinkError> {
         let plan_file = self.folder.join(plan);
         fs::create_dir_all(plan_file.parent().unwrap()).unwrap();

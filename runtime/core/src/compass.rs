@@ -12,7 +12,7 @@ mod tests;
 use core::f64::consts::FRAC_PI_2;
 
 use crate::{Meters, Nanos, PINGS_KEPT, Pings, Pose, Radians, SONARS, Shape};
-use line::Line;
+use line::RegressionLine;
 
 /// Sonars that face left and right, each with the sign of its direction.
 const SIDES: [(usize, f64); 2] = [(4, 1.0), (12, -1.0)];
@@ -76,7 +76,7 @@ pub struct Compass {
     /// Origin and direction of the axis along which the lines of the walls are measured; `None` while the robot does
     /// not drive along walls.
     way: Option<Pose>,
-    sides: [Line; 2],
+    sides: [RegressionLine; 2],
     /// Time of the newest ping when three pings were last evaluated.
     judged: Nanos,
 }
@@ -89,7 +89,7 @@ impl Default for Compass {
             askew: None,
             last: Pose::ORIGIN,
             way: None,
-            sides: [Line::default(); 2],
+            sides: [RegressionLine::default(); 2],
             judged: Nanos::ZERO,
         }
     }
@@ -161,7 +161,7 @@ impl Compass {
         }
         self.sides = SIDES.map(|(sonar, _)| {
             let newest = pings.get(sonar).and_then(|pings| pings.newest_first().next());
-            Line::since(newest.map_or(Nanos::ZERO, |ping| ping.at))
+            RegressionLine::since(newest.map_or(Nanos::ZERO, |ping| ping.at))
         });
         self.way = Some(Pose { theta: axis, ..odometry });
         self.way

@@ -35,7 +35,7 @@ const TIMING: &str = "On a real robot, SIGUSR1 prints how late turns began and h
 
 /// Values of the options that all targets share.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Options {
+pub(crate) struct SharedOptions {
     /// Time from the start of a turn to the start of the next.
     pub(crate) period: Duration,
     /// Time of the plan after which the run is stopped.
@@ -117,8 +117,8 @@ fn with_statuses(command: Command) -> Command {
 }
 
 /// Reads the common options.
-pub(crate) fn options(target: &TargetOptions, matches: &ArgMatches) -> Options {
-    Options {
+pub(crate) fn options(target: &TargetOptions, matches: &ArgMatches) -> SharedOptions {
+    SharedOptions {
         period: matches.get_one("period").copied().unwrap_or(target.period),
         timeout: matches.get_one("timeout").copied(),
         turns: matches.get_one("turns").copied(),

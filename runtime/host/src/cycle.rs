@@ -25,7 +25,7 @@ pub(crate) struct Limits {
 
 /// Result of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Step {
+pub(crate) enum TurnEnd {
     /// The run continues.
     Next,
     /// The run ends: the null input is sent once more, and then the robot is stopped.
@@ -43,7 +43,7 @@ pub(crate) trait Turns {
     ///
     /// # Errors
     /// Returns the reason if the run must end although the robot has no fault.
-    fn turn(&mut self, t: Nanos, number: u64) -> Result<Step, RunEnd>;
+    fn turn(&mut self, t: Nanos, number: u64) -> Result<TurnEnd, RunEnd>;
     /// Returns the new pace of stepped time; `None` if the pace does not change.
     fn pace(&mut self) -> Option<Pace> {
         None
@@ -73,8 +73,8 @@ pub(crate) fn cycle<I: Instants>(
     let mut number: u64 = 0;
     let ending = loop {
         match turns.turn(t, number) {
-            Ok(Step::Next) => {}
-            Ok(Step::Over) => break RunEnd::Over,
+            Ok(TurnEnd::Next) => {}
+            Ok(TurnEnd::Over) => break RunEnd::Over,
             Err(ending) => break ending,
         }
         number = number.saturating_add(1);

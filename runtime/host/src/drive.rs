@@ -11,7 +11,7 @@ use crate::helm::Helm;
 use crate::observer::{Observer, Observes};
 use crate::pilot::{AfterPlan, Pilot, PilotFault};
 use crate::position::Position;
-use crate::report::Report;
+use crate::report::ReportWriter;
 use crate::run_end::RunEnd;
 use crate::transitions::Transitions;
 use crate::{Break, Intervention, Orders, SettingsOf, Supervisor};
@@ -68,10 +68,10 @@ pub(crate) trait Drive {
     /// Returns how the run continues, after a turn in which the current plan has ended.
     fn after_plan(&mut self) -> AfterPlan;
     /// Calls the supervisor, if there is one, at the break after `turns` turns, the last of them at time `t`.
-    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders;
+    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &ReportWriter<'_>) -> Orders;
     /// Passes the last state of a run that ends before its plan, after `turns` turns, to the supervisor, if there is
     /// one.
-    fn at_end(&mut self, turns: u64, t: Nanos, report: &Report<'_>);
+    fn at_end(&mut self, turns: u64, t: Nanos, report: &ReportWriter<'_>);
     /// Passes the reason for the end of a run, and the exit status, to the supervisor, if there is one.
     fn ended(&mut self, why: &str, status: u8);
 
@@ -213,14 +213,14 @@ where
         self.helm.pilot_mut().after_plan()
     }
 
-    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders {
+    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &ReportWriter<'_>) -> Orders {
         let Self { robot, helm, settings, output: Some(y), .. } = self else { return Orders::default() };
         let Some((supervisor, pilot, input)) = helm.parts() else { return Orders::default() };
         let (settings, course) = (settings.map(|settings| settings(robot)), report.course());
         supervisor.at_break(&mut Break { turns, t, y, input, is_over, pilot, settings, course })
     }
 
-    fn at_end(&mut self, turns: u64, t: Nanos, report: &Report<'_>) {
+    fn at_end(&mut self, turns: u64, t: Nanos, report: &ReportWriter<'_>) {
         let Self { robot, helm, settings, output: Some(y), .. } = self else { return };
         let Some((supervisor, pilot, input)) = helm.parts() else { return };
         let (settings, course) = (settings.map(|settings| settings(robot)), report.course());

@@ -15,19 +15,19 @@ use crate::instants::{Instants, nanos};
 use crate::paths::Recorder;
 use crate::progress::Progress;
 use crate::ready::{KnownFiles, Ready, is_watched, ready};
-use crate::report::Report;
+use crate::report::ReportWriter;
 use crate::required::Required;
 use crate::run_end::{RunEnd, RunFault, say};
 use crate::safety::shielded;
 use crate::signals::Signals;
-use crate::surroundings::{PlanData, Settings, Surroundings};
+use crate::surroundings::{PlanData, RunSettings, Surroundings};
 use crate::turns::{self, Witnesses};
 use crate::{Refusal, Time, watch, way_out};
 
 /// Opens the robot and the files, makes the turns, and stops the robot; returns the exit status.
 pub(crate) fn one_run<'o, I, O>(
     executable: &dyn Executable,
-    settings: &Settings<'_>,
+    settings: &RunSettings<'_>,
     plan: &PlanData,
     surroundings: Surroundings<'_, I, O>,
 ) -> u8
@@ -35,7 +35,7 @@ where
     I: Instants,
     O: FnOnce() -> Box<dyn Write + 'o>,
 {
-    let Settings { matches, options, call, .. } = settings;
+    let RunSettings { matches, options, call, .. } = settings;
     let read = KnownFiles { read: &call.read, paths: &plan.paths };
     let begin = begin(settings, executable.target().name);
     match ready(executable, matches, options, plan.store, read, &surroundings.signals, begin) {
@@ -50,8 +50,8 @@ where
 }
 
 /// Returns the data of a run that a record contains before the first turn.
-fn begin(settings: &Settings<'_>, target: &str) -> Begin {
-    let Settings { program, call, options, .. } = settings;
+fn begin(settings: &RunSettings<'_>, target: &str) -> Begin {
+    let RunSettings { program, call, options, .. } = settings;
     let version = if program.version.is_empty() { env!("CARGO_PKG_VERSION") } else { program.version };
     Begin {
         version: version.to_owned(),
@@ -68,7 +68,7 @@ fn begin(settings: &Settings<'_>, target: &str) -> Begin {
 /// Makes the turns of an open robot, stops it, and reports why the run ended; returns the exit status.
 fn driven<'o, I, O>(
     mut ready: Ready<'_>,
-    settings: &Settings<'_>,
+    settings: &RunSettings<'_>,
     required: &Required,
     surroundings: Surroundings<'_, I, O>,
 ) -> u8
@@ -83,7 +83,7 @@ where
     if screen {
         out = Box::new(HeldReport::new(out));
     }
-    let mut report = Report::new(&mut *out, is_watched(time) && !screen);
+    let mut report = ReportWriter::new(&mut *out, is_watched(time) && !screen);
     if time == Time::Wall
         && let Err(refused) = instants.keep_time()
     {
@@ -111,7 +111,7 @@ where
 /// `elapsed`, is given.
 fn with_witnesses<'e>(
     ready: &mut Ready<'_>,
-    report: &mut Report<'_>,
+    report: &mut ReportWriter<'_>,
     err: &'e mut dyn Write,
     elapsed: Option<Box<dyn FnMut() -> Duration + 'e>>,
     run: impl FnOnce(&mut dyn Drive, &mut Witnesses<'_, '_>) -> RunEnd,
@@ -135,7 +135,7 @@ fn end(
     ending: RunEnd,
     required: &Required,
     signals: &Signals,
-    report: &mut Report<'_>,
+    report: &mut ReportWriter<'_>,
     err: &mut dyn Write,
 ) -> u8 {
     let Ready { mut drive, log, path, mut views, .. } = ready;

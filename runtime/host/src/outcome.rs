@@ -6,7 +6,7 @@ use crate::report::Over;
 
 /// Outcome of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Outcome {
+pub(crate) enum RunOutcome {
     /// The plan has ended, and the run has no goal.
     Ended,
     /// The plan has ended, and the robot is in its goal.
@@ -27,7 +27,7 @@ pub(crate) enum Outcome {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct EndedRun {
     pub(crate) seed: u64,
-    pub(crate) outcome: Outcome,
+    pub(crate) outcome: RunOutcome,
     /// Time of the plan at the end of the run.
     pub(crate) t: Nanos,
     /// End of the plan; `None` if the plan has not ended.

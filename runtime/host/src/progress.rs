@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use mdle_runtime::{Nanos, Printable};
 
-use crate::report::Report;
+use crate::report::ReportWriter;
 use crate::run_end::say;
 
 /// Minimum time between two updates of the line.
@@ -39,7 +39,7 @@ impl<'e> Progress<'e> {
 
     /// Shows the report of a run and its progress, if it is time for an update; the current atom has the law `law` at
     /// time `t`.
-    pub(crate) fn run(&mut self, t: Nanos, law: &str, report: &mut Report<'_>) {
+    pub(crate) fn run(&mut self, t: Nanos, law: &str, report: &mut ReportWriter<'_>) {
         let Some(now) = self.due() else { return };
         self.clear();
         report.flush();
@@ -113,7 +113,7 @@ mod tests {
         let time = Cell::new(Duration::ZERO);
         let (mut err, mut out) = (Vec::new(), Vec::new());
         out.extend_from_slice(b"one\n");
-        let mut report = Report::new(&mut out, false);
+        let mut report = ReportWriter::new(&mut out, false);
         let mut progress = Progress::new(&mut err, Box::new(|| time.get()));
         for (millis, t) in [(0, 0), (99, 50), (100, 60), (150, 80), (201, 100)] {
             time.set(Duration::from_millis(millis));

@@ -8,12 +8,12 @@ use clap::ArgMatches;
 use mdle_record::Begin;
 use mdle_runtime::PathStore;
 
-use crate::arguments::Options;
+use crate::arguments::SharedOptions;
 use crate::drive::Drive;
 use crate::executable::Executable;
 use crate::log::UnchangedFile;
 use crate::paths::{self, Recorder};
-use crate::record::Record;
+use crate::record::RecordWriter;
 use crate::run_log::{Format, RunLog, is_record};
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
@@ -40,7 +40,7 @@ pub(crate) struct Ready<'p> {
 pub(crate) fn ready<'p>(
     executable: &'p dyn Executable,
     matches: &ArgMatches,
-    options: &Options,
+    options: &SharedOptions,
     store: PathStore,
     plan: KnownFiles<'_>,
     signals: &Signals,
@@ -80,7 +80,7 @@ pub(crate) struct KnownFiles<'a> {
 fn named_files(
     target: &TargetOptions,
     matches: &ArgMatches,
-    options: &Options,
+    options: &SharedOptions,
     plan: KnownFiles<'_>,
 ) -> Vec<NamedFile> {
     let written = [("--log", &options.log), ("--record-path", &options.path)];
@@ -97,7 +97,7 @@ fn named_files(
 
 /// Returns an error for a log without a file name, or for a record of a robot whose outputs or inputs a record cannot
 /// contain.
-fn check_record(target: &TargetOptions, options: &Options) -> Result<(), Refusal> {
+fn check_record(target: &TargetOptions, options: &SharedOptions) -> Result<(), Refusal> {
     if options.log.as_deref() == Some(Path::new("-")) {
         let sentence = "--log -: expected the name of a file; `--log /dev/stdout` writes JSON lines to standard output";
         return Err(Refusal::Usage(sentence.to_owned()));
@@ -115,13 +115,13 @@ fn check_record(target: &TargetOptions, options: &Options) -> Result<(), Refusal
 /// Begins the log in the format that its name determines.
 fn begun(
     file: UnchangedFile<'_>,
-    options: &Options,
+    options: &SharedOptions,
     begin: Begin,
     prompt: bool,
     signals: &Signals,
 ) -> io::Result<RunLog> {
     let format = if options.log.as_deref().is_some_and(is_record) {
-        Format::Record(Box::new(Record::new(file.recorded(signals.patience())?, begin, prompt)))
+        Format::Record(Box::new(RecordWriter::new(file.recorded(signals.patience())?, begin, prompt)))
     } else {
         Format::Lines(file.begin(prompt, signals.patience())?)
     };

@@ -7,7 +7,7 @@
 use std::io::{self, Write};
 
 use mdle_record::frames::Frames;
-use mdle_record::{Applied, Begin, Change, Overruled, Step, TurnMade};
+use mdle_record::{Applied, Begin, Change, Overruled, RecordedTransition, TurnMade};
 use mdle_runtime::trace::{Json, Seconds};
 use mdle_runtime::{Nanos, Sensed, Turn, Twist};
 
@@ -25,7 +25,7 @@ const FLUSH: u64 = 1_000_000_000;
 
 /// A record that is being written.
 #[derive(Debug)]
-pub(crate) struct Record<W = Outlet> {
+pub(crate) struct RecordWriter<W = Outlet> {
     file: W,
     frames: Frames,
     begin: Begin,
@@ -56,7 +56,7 @@ pub(crate) struct UnmadeTurn<'a> {
     pub(crate) supervised: &'a Supervised,
 }
 
-impl<W: Write> Record<W> {
+impl<W: Write> RecordWriter<W> {
     /// Returns the record of a run that begins, which is written to `file`.
     pub(crate) fn new(file: W, begin: Begin, prompt: bool) -> Self {
         let (frames, bytes, intervention) = (Frames::default(), Vec::new(), String::new());
@@ -116,7 +116,12 @@ impl<W: Write> Record<W> {
     }
 
     /// Writes the part of a turn that a replay needs.
-    fn exact(&mut self, turn: &UnmadeTurn<'_>, (applied, state): (Applied, u64), steps: Vec<Step>) -> io::Result<()> {
+    fn exact(
+        &mut self,
+        turn: &UnmadeTurn<'_>,
+        (applied, state): (Applied, u64),
+        steps: Vec<RecordedTransition>,
+    ) -> io::Result<()> {
         let Some((y, asked, sent)) = self.exact.take() else {
             return Err(io::Error::other("this robot has outputs or inputs of a type of its own"));
         };
@@ -215,6 +220,6 @@ impl<W: Write> Record<W> {
     }
 }
 
-fn step(transition: &mdle_runtime::Transition, operands: &[Operand]) -> Step {
-    Step::new(transition, operands.iter().map(|(number, _)| *number))
+fn step(transition: &mdle_runtime::Transition, operands: &[Operand]) -> RecordedTransition {
+    RecordedTransition::new(transition, operands.iter().map(|(number, _)| *number))
 }

@@ -16,7 +16,7 @@ use crate::transitions::{Operand, Transitions};
 use crate::{Judgement, Verdict};
 
 /// Writer of the report of a run; it stops writing when its reader closes the stream.
-pub(crate) struct Report<'a> {
+pub(crate) struct ReportWriter<'a> {
     out: &'a mut dyn Write,
     /// `true` if lines are shown as soon as they are written; `false` at the fastest pace.
     prompt: bool,
@@ -58,7 +58,7 @@ enum ReportState {
     Closed(Option<io::Error>),
 }
 
-impl<'a> Report<'a> {
+impl<'a> ReportWriter<'a> {
     /// Returns a report that is written to `out`.
     pub(crate) fn new(out: &'a mut dyn Write, prompt: bool) -> Self {
         Self {

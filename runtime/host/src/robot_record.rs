@@ -10,12 +10,12 @@ use mdle_runtime::{Nanos, Sensed, Turn, Twist};
 use crate::drive::Exact;
 use crate::log::Entry;
 use crate::position::Texts;
-use crate::record::{Record, UnmadeTurn};
+use crate::record::{RecordWriter, UnmadeTurn};
 use crate::supervised::Supervised;
 use crate::transitions::Transitions;
 
 /// The record of a robot that is being written. Each second of the run is written to the file when the second is over.
-pub struct RobotRecord(Record<RecordFile<File>>);
+pub struct RobotRecord(RecordWriter<RecordFile<File>>);
 
 /// A turn, for the record of a robot.
 pub struct RobotTurn<'a> {
@@ -47,7 +47,7 @@ impl RobotRecord {
     /// # Errors
     /// Fails if the file cannot be written.
     pub fn create(path: &Path, begin: Begin) -> io::Result<Self> {
-        Ok(Self(Record::new(RecordFile::new(File::create(path)?), begin, false)))
+        Ok(Self(RecordWriter::new(RecordFile::new(File::create(path)?), begin, false)))
     }
 
     /// Writes a turn.

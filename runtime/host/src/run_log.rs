@@ -9,7 +9,7 @@ use mdle_runtime::Nanos;
 
 use crate::drive::Exact;
 use crate::log::{Entry, Log};
-use crate::record::{Record, UnmadeTurn};
+use crate::record::{RecordWriter, UnmadeTurn};
 
 /// Ending of a record's file name.
 const MCAP: &str = "mcap";
@@ -34,7 +34,7 @@ pub(crate) enum Format {
     /// JSON lines, with an object for each turn.
     Lines(Log),
     /// A record from which the run can be replayed.
-    Record(Box<Record>),
+    Record(Box<RecordWriter>),
 }
 
 /// Returns `true` if the name of a log asks for a record.

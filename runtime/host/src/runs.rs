@@ -17,9 +17,9 @@ use crate::clock::Clock;
 use crate::cycle::Limits;
 use crate::drive::Drive;
 use crate::instants::Instants;
-use crate::outcome::{EndedRun, Outcome};
+use crate::outcome::{EndedRun, RunOutcome};
 use crate::progress::Progress;
-use crate::report::Report;
+use crate::report::ReportWriter;
 use crate::required::Required;
 use crate::run_end::RunEnd;
 use crate::safety::{Panicked, shielded};
@@ -133,10 +133,10 @@ fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<Ende
 
 /// Makes the run with this seed; returns `None` if a signal interrupted it.
 fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
-    let mut run = EndedRun { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
+    let mut run = EndedRun { seed, outcome: RunOutcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut drive = match shielded(|| (batch.drive)(seed)).unwrap_or_else(panicked) {
         Ok(drive) => drive,
-        Err(sentence) => return Some(EndedRun { outcome: Outcome::Failed(sentence), ..run }),
+        Err(sentence) => return Some(EndedRun { outcome: RunOutcome::Failed(sentence), ..run }),
     };
     let mut clock = Clock::begin(StoppedClock, Time::Stepped(Pace::Max), terms.period, None);
     let mut nobody = std::io::sink();
@@ -144,7 +144,7 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
     let limits = Limits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
     let watched = terms.watch.run(Time::Stepped(Pace::Max));
     let ending = shielded(|| {
-        let mut report = Report::new(&mut nobody, false);
+        let mut report = ReportWriter::new(&mut nobody, false);
         let mut witnesses =
             Witnesses { report: &mut report, log: None, path: None, views: None, progress: None, err: None };
         let ending = turns::run(&mut *drive, limits, &mut clock, terms.signals, &mut witnesses, &watched);
@@ -161,7 +161,7 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
     let failure = stopped.unwrap_or_else(panicked).err();
     run.outcome = match ending {
         Ok(RunEnd::Signal(_)) => return None,
-        Err(panic) => Outcome::Failed(panicked::<()>(panic).err().unwrap_or_default()),
+        Err(panic) => RunOutcome::Failed(panicked::<()>(panic).err().unwrap_or_default()),
         Ok(
             RunEnd::Unstarted(fault)
             | RunEnd::Robot(fault)
@@ -171,21 +171,21 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
             | RunEnd::Pilot(fault)
             | RunEnd::Failed(fault)
             | RunEnd::Bug(fault),
-        ) => Outcome::Failed(fault),
-        Ok(RunEnd::Safety(rule)) => Outcome::Failed(format!("the safety rules ended it: {rule}")),
-        Ok(RunEnd::Quit) => Outcome::Failed("it was asked to end".to_owned()),
-        Ok(RunEnd::Suspended { .. }) => Outcome::Failed("it went without a command".to_owned()),
-        Ok(_) if failure.is_some() => Outcome::Failed(failure.unwrap_or_default()),
-        Ok(RunEnd::Timeout(_) | RunEnd::Turns(_)) => Outcome::TimedOut,
+        ) => RunOutcome::Failed(fault),
+        Ok(RunEnd::Safety(rule)) => RunOutcome::Failed(format!("the safety rules ended it: {rule}")),
+        Ok(RunEnd::Quit) => RunOutcome::Failed("it was asked to end".to_owned()),
+        Ok(RunEnd::Suspended { .. }) => RunOutcome::Failed("it went without a command".to_owned()),
+        Ok(_) if failure.is_some() => RunOutcome::Failed(failure.unwrap_or_default()),
+        Ok(RunEnd::Timeout(_) | RunEnd::Turns(_)) => RunOutcome::TimedOut,
         Ok(RunEnd::Over | RunEnd::Otherwise(_)) => {
             run.over = over;
             match shielded(|| Ok(drive.observer().and_then(|observer| observer.judged()))).unwrap_or_else(panicked) {
-                Err(panic) => Outcome::Failed(panic),
-                Ok(_) if run.over.as_ref().is_some_and(|over| !terms.required.allows(over)) => Outcome::Otherwise,
-                Ok(None) => Outcome::Ended,
-                Ok(Some(Judgement::Arrived)) => Outcome::Arrived,
-                Ok(Some(Judgement::Bumped)) => Outcome::Bumped,
-                Ok(Some(Judgement::Astray(place))) => Outcome::Astray(place),
+                Err(panic) => RunOutcome::Failed(panic),
+                Ok(_) if run.over.as_ref().is_some_and(|over| !terms.required.allows(over)) => RunOutcome::Otherwise,
+                Ok(None) => RunOutcome::Ended,
+                Ok(Some(Judgement::Arrived)) => RunOutcome::Arrived,
+                Ok(Some(Judgement::Bumped)) => RunOutcome::Bumped,
+                Ok(Some(Judgement::Astray(place))) => RunOutcome::Astray(place),
             }
         }
     };

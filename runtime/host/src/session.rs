@@ -6,7 +6,7 @@ use clap::ArgMatches;
 use mdle_runtime::PathStore;
 
 use crate::answer::{print_answer, unparsed};
-use crate::arguments::{self, Options};
+use crate::arguments::{self, SharedOptions};
 use crate::call::Call;
 use crate::executable::Executable;
 use crate::instants::Instants;
@@ -18,7 +18,7 @@ use crate::required::{Required, scopes};
 use crate::run_end::{RunEnd, say};
 use crate::runs::{self, Runs, Terms};
 use crate::safety::shielded;
-use crate::surroundings::{PlanData, Settings, Surroundings};
+use crate::surroundings::{PlanData, RunSettings, Surroundings};
 use crate::target_options::TargetOptions;
 use crate::{Pace, Program, Refusal, Time};
 
@@ -44,7 +44,7 @@ where
         Ok(Some(answer)) => return print_answer(&answer, &mut *(surroundings.out)(), surroundings.err),
         Ok(None) => {}
     }
-    let settings = Settings { program, call: &call, matches: &matches, options: &options };
+    let settings = RunSettings { program, call: &call, matches: &matches, options: &options };
     let plan = match prepared(&target, &matches, executable, call.later_path.as_deref()) {
         Err(refusal) => return refusal.tell(surroundings.err),
         Ok(plan) => plan,
@@ -80,7 +80,7 @@ fn prepared(
 fn batch<'p>(
     executable: &'p dyn Executable,
     matches: &ArgMatches,
-    options: &Options,
+    options: &SharedOptions,
     store: PathStore,
 ) -> Result<Option<Runs<'p>>, Refusal> {
     let batch = shielded(|| executable.batch(matches, options.period, store)).unwrap_or_else(bug_before)?;
@@ -97,7 +97,7 @@ fn batch<'p>(
 /// Makes the runs of a batch and reports them; returns the exit status.
 fn several<'o, I, O>(
     batch: &Runs<'_>,
-    settings: &Settings<'_>,
+    settings: &RunSettings<'_>,
     required: &Required,
     surroundings: Surroundings<'_, I, O>,
 ) -> u8

@@ -8,7 +8,7 @@ use mdle_runtime::Nanos;
 use mdle_runtime::trace::{Json, Seconds};
 
 use crate::call::quoted;
-use crate::outcome::{EndedRun, Outcome};
+use crate::outcome::{EndedRun, RunOutcome};
 use crate::report::Over;
 use crate::run_end;
 
@@ -27,7 +27,7 @@ pub(crate) struct Summary<'a> {
     pub(crate) program: &'a str,
 }
 
-impl Outcome {
+impl RunOutcome {
     const NAMES: [&'static str; 7] = ["ended", "arrived", "bumped", "astray", "ended otherwise", "timed out", "failed"];
 
     fn name(&self) -> &'static str {
@@ -94,7 +94,7 @@ impl Summary<'_> {
 
     /// Returns the command that repeats a run alone.
     fn command(&self, run: &EndedRun) -> String {
-        let timeout = self.timeout.filter(|_| run.outcome == Outcome::TimedOut);
+        let timeout = self.timeout.filter(|_| run.outcome == RunOutcome::TimedOut);
         let timeout = timeout.map(|timeout| ["--timeout".to_owned(), timeout.as_secs().to_string()]);
         let options = (self.alone)(run.seed).into_iter().chain(timeout.into_iter().flatten());
         options.fold(self.program.to_owned(), |command, word| command + " " + &quoted(&word))
@@ -103,7 +103,7 @@ impl Summary<'_> {
     /// Returns groups of similar runs in the order of their first seeds. Runs that reached their goal are left out.
     fn groups(&self) -> Vec<Group<'_>> {
         let mut groups: Vec<Group<'_>> = Vec::new();
-        for run in self.runs.iter().filter(|run| run.outcome != Outcome::Arrived) {
+        for run in self.runs.iter().filter(|run| run.outcome != RunOutcome::Arrived) {
             match groups.iter_mut().find(|group| group.holds(run)) {
                 Some(group) => group.count += 1,
                 None => groups.push(Group { first: run, count: 1 }),
@@ -115,7 +115,7 @@ impl Summary<'_> {
     /// Returns the summary as a JSON object, without a line break.
     pub(crate) fn json(&self) -> String {
         let mut json = format!("{{\"runs\":{},\"done\":{},\"first_seed\":{}", self.asked, self.runs.len(), self.first);
-        for name in Outcome::NAMES {
+        for name in RunOutcome::NAMES {
             let _ = write!(json, ",{}:{}", Json(&name.replace(' ', "_")), self.count(name));
         }
         let _ = write!(json, ",\"contacts\":{}", self.contacts().0);
@@ -137,7 +137,7 @@ impl Summary<'_> {
             let (by, operands, cause) = (Json(&by), operands.join(","), Json(&cause));
             let _ = write!(json, ",\"by\":{by},\"operands\":[{operands}],\"cause\":{cause}");
             let _ = write!(json, ",\"contacts\":{contacts}");
-            if let Outcome::Astray(message) | Outcome::Failed(message) = outcome {
+            if let RunOutcome::Astray(message) | RunOutcome::Failed(message) = outcome {
                 let _ = write!(json, ",\"said\":{}", Json(message));
             }
             let _ = write!(json, ",\"command\":{}}}", Json(&self.command(run)));
@@ -154,14 +154,14 @@ impl fmt::Display for Summary<'_> {
             write!(f, "{done} of ")?;
         }
         write!(f, "{}, seeds {} to {last}", count_text(self.asked, "run"), self.first)?;
-        let counts = Outcome::NAMES.into_iter().map(|name| (name, self.count(name)));
+        let counts = RunOutcome::NAMES.into_iter().map(|name| (name, self.count(name)));
         for (number, (name, count)) in counts.filter(|(_, count)| *count > 0).enumerate() {
             write!(f, "{} {count} {name}", if number == 0 { ":" } else { "," })?;
         }
         writeln!(f)?;
         if let Some((median, worst)) = self.times() {
             let (median, slowest) = (median.seconds(), worst.t.seconds());
-            let what = if worst.outcome == Outcome::Arrived { "time to arrive" } else { "time" };
+            let what = if worst.outcome == RunOutcome::Arrived { "time to arrive" } else { "time" };
             writeln!(f, "{what}: median {median:.1} s, worst {slowest:.1} s (seed {})", worst.seed)?;
         }
         let (contacts, runs) = self.contacts();
@@ -186,7 +186,7 @@ impl Group<'_> {
     /// count.
     fn holds(&self, run: &EndedRun) -> bool {
         let is_alike = match (&self.first.outcome, &run.outcome) {
-            (Outcome::Astray(_), Outcome::Astray(_)) => true,
+            (RunOutcome::Astray(_), RunOutcome::Astray(_)) => true,
             (one, other) => one == other,
         };
         is_alike && self.first.over.as_ref().map(|over| &over.words) == run.over.as_ref().map(|over| &over.words)
@@ -198,20 +198,20 @@ impl fmt::Display for Group<'_> {
         let EndedRun { seed, outcome, t, over, .. } = self.first;
         write!(f, "{} {}", self.count, outcome.name())?;
         match (outcome, over) {
-            (Outcome::Failed(sentence), _) => write!(f, ": {sentence}")?,
-            (Outcome::Ended, Some(over)) => write!(f, " by {}", over.words)?,
+            (RunOutcome::Failed(sentence), _) => write!(f, ": {sentence}")?,
+            (RunOutcome::Ended, Some(over)) => write!(f, " by {}", over.words)?,
             (_, Some(over)) => write!(f, ", plan over: {}", over.words)?,
             (_, None) => {}
         }
         write!(f, "; {}seed {seed} at {:.1} s", if self.count > 1 { "the first is " } else { "" }, t.seconds())?;
         match outcome {
-            Outcome::Astray(place) => write!(f, ", {place}"),
-            Outcome::Ended
-            | Outcome::Arrived
-            | Outcome::Bumped
-            | Outcome::Otherwise
-            | Outcome::TimedOut
-            | Outcome::Failed(_) => Ok(()),
+            RunOutcome::Astray(place) => write!(f, ", {place}"),
+            RunOutcome::Ended
+            | RunOutcome::Arrived
+            | RunOutcome::Bumped
+            | RunOutcome::Otherwise
+            | RunOutcome::TimedOut
+            | RunOutcome::Failed(_) => Ok(()),
         }
     }
 }

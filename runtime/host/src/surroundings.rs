@@ -7,7 +7,7 @@ use clap::ArgMatches;
 use mdle_runtime::PathStore;
 
 use crate::Program;
-use crate::arguments::Options;
+use crate::arguments::SharedOptions;
 use crate::call::Call;
 use crate::cycle::Limits;
 use crate::required::Required;
@@ -31,7 +31,7 @@ pub(crate) struct Surroundings<'e, I, O> {
 }
 
 /// Options of a run, and words that its reports need.
-pub(crate) struct Settings<'a> {
+pub(crate) struct RunSettings<'a> {
     /// Plan's name and version.
     pub(crate) program: Program<'a>,
     /// Words by which the program was called.
@@ -39,10 +39,10 @@ pub(crate) struct Settings<'a> {
     /// All options, including the target's own options.
     pub(crate) matches: &'a ArgMatches,
     /// Options that all targets have.
-    pub(crate) options: &'a Options,
+    pub(crate) options: &'a SharedOptions,
 }
 
-impl Settings<'_> {
+impl RunSettings<'_> {
     /// Returns the limits of the run.
     pub(crate) fn limits(&self) -> Limits {
         Limits { timeout: self.options.timeout, turns: self.options.turns }

@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use mdle_runtime::{Nanos, Turn};
 
 use crate::clock::Clock;
-use crate::cycle::{Limits, Step, Turns, cycle};
+use crate::cycle::{Limits, TurnEnd, Turns, cycle};
 use crate::drive::Drive;
 use crate::instants::Instants;
 use crate::log::Entry;
@@ -14,7 +14,7 @@ use crate::pilot::AfterPlan;
 use crate::position::Position;
 use crate::progress::Progress;
 use crate::record::UnmadeTurn;
-use crate::report::Report;
+use crate::report::ReportWriter;
 use crate::run_end::{RunEnd, say};
 use crate::run_log::RunLog;
 use crate::signals::Signals;
@@ -29,7 +29,7 @@ use crate::{Ended, Observer, Orders, Pace, Verdict};
 /// Recipients of the reports about turns.
 pub(crate) struct Witnesses<'a, 'o> {
     /// Report on standard output.
-    pub(crate) report: &'a mut Report<'o>,
+    pub(crate) report: &'a mut ReportWriter<'o>,
     /// Run log, if the options request it.
     pub(crate) log: Option<&'a mut RunLog>,
     /// Recorder of the driven path, if the options request it.
@@ -90,19 +90,19 @@ impl OnePlan<'_, '_, '_> {
     }
 
     /// Returns how the run continues after a turn, as the plan and the supervisor's intervention determine.
-    fn step(&mut self, turn: Turn<()>) -> Result<Step, RunEnd> {
+    fn step(&mut self, turn: Turn<()>) -> Result<TurnEnd, RunEnd> {
         let Supervised { verdict, rule, diverted_by, .. } = &self.supervised;
         let after = match turn {
             Turn::Over => self.drive.after_plan(),
             Turn::Law(()) | Turn::Cut => AfterPlan::Continues,
         };
         match after {
-            _ if *verdict == Some(Verdict::Ended) && self.drive.ended_by(rule) => Ok(Step::Next),
+            _ if *verdict == Some(Verdict::Ended) && self.drive.ended_by(rule) => Ok(TurnEnd::Next),
             _ if *verdict == Some(Verdict::Ended) => Err(RunEnd::Safety(rule.clone())),
-            AfterPlan::Continues => Ok(Step::Next),
+            AfterPlan::Continues => Ok(TurnEnd::Next),
             AfterPlan::Fails(sentence) => Err(RunEnd::Failed(sentence)),
             AfterPlan::Ends if !diverted_by.is_empty() => Err(RunEnd::Safety(diverted_by.clone())),
-            AfterPlan::Ends => Ok(Step::Over),
+            AfterPlan::Ends => Ok(TurnEnd::Over),
         }
     }
 }
@@ -112,7 +112,7 @@ impl Turns for OnePlan<'_, '_, '_> {
         self.drive.exchange()
     }
 
-    fn turn(&mut self, t: Nanos, number: u64) -> Result<Step, RunEnd> {
+    fn turn(&mut self, t: Nanos, number: u64) -> Result<TurnEnd, RunEnd> {
         self.number = number;
         if number == 0 {
             self.at_break(0, t, false)?;
@@ -154,7 +154,7 @@ impl Turns for OnePlan<'_, '_, '_> {
             witnesses.say(&message);
         }
         let step = self.step(turn)?;
-        self.at_break(number.saturating_add(1), t, step == Step::Over)?;
+        self.at_break(number.saturating_add(1), t, step == TurnEnd::Over)?;
         Ok(step)
     }
 
@@ -193,7 +193,7 @@ fn watched(
     turn: Turn<()>,
     has_begun: bool,
     (t, zero): (Nanos, Nanos),
-    report: &Report<'_>,
+    report: &ReportWriter<'_>,
 ) {
     let plan = position.texts();
     let atom = position.atom().and_then(|atom| Some((atom, plan.fsm().atoms.get(atom as usize)?)));
@@ -206,7 +206,7 @@ fn watched(
 }
 
 /// Returns the cause of the end of a run, in words.
-fn cause(ending: &RunEnd, report: &Report<'_>) -> String {
+fn cause(ending: &RunEnd, report: &ReportWriter<'_>) -> String {
     match (ending, report.over()) {
         (RunEnd::Failed(sentence), _) => sentence.clone(),
         (_, Some(over)) => over.cause.clone(),
@@ -215,7 +215,7 @@ fn cause(ending: &RunEnd, report: &Report<'_>) -> String {
 }
 
 /// Informs the observer that the turns have ended, and about the cause.
-fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &RunEnd, report: &Report<'_>, t: Nanos) {
+fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &RunEnd, report: &ReportWriter<'_>, t: Nanos) {
     let by = cause(ending, report);
     observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == RunEnd::Over, by: &by, t });
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use clap::ArgMatches;
 use mdle_runtime::{Nanos, Sensed};
-use mdle_simulator::{Footprint, Form, Place, World};
+use mdle_simulator::{Footprint, Form, Point, World};
 
 use crate::PlanPosition;
 use map::Map;
@@ -37,10 +37,10 @@ pub struct Watch {
     world: World,
     map: Option<Map>,
     /// Positions on the path driven so far, at least a centimetre apart.
-    way: Vec<Place>,
-    echoes: Vec<Place>,
+    way: Vec<Point>,
+    echoes: Vec<Point>,
     /// Displacement of each moving object of the world; `None` for an open door.
-    things: Vec<Option<Place>>,
+    things: Vec<Option<Point>>,
     /// Time of the robot's last output.
     sensed: Option<Nanos>,
     /// Shape of the robot's body.
@@ -78,9 +78,9 @@ impl Watch {
     }
 
     /// Updates the place of the robot's body, its output, and the displacement of each moving object of the world.
-    pub fn sensed(&mut self, body: &Footprint, sensed: &Sensed, t: Nanos, things: impl Iterator<Item = Option<Place>>) {
+    pub fn sensed(&mut self, body: &Footprint, sensed: &Sensed, t: Nanos, things: impl Iterator<Item = Option<Point>>) {
         let Footprint { pose, form } = body;
-        let place = Place::of(pose);
+        let place = Point::of(pose);
         if self.way.last().is_none_or(|last| libm::hypot(last.x - place.x, last.y - place.y) >= 0.01) {
             self.way.push(place);
         }
@@ -98,7 +98,7 @@ impl Watch {
 
     /// Shows a turn, if it is time for a new picture. If the walls are not known, `echoes` are the places of all echoes
     /// so far.
-    pub fn turned(&mut self, standing: &PlanPosition<'_>, echoes: &[Place]) {
+    pub fn turned(&mut self, standing: &PlanPosition<'_>, echoes: &[Point]) {
         if self.shown.is_some_and(|shown| shown.elapsed() < EVERY) {
             return;
         }
@@ -108,7 +108,7 @@ impl Watch {
         let (columns, rows) = screen::size();
         let below = self.now.below(columns);
         let (wide, high) = (columns, rows.saturating_sub(below.len() + 1));
-        let fits = |map: &Map| map.is_of(wide, high) && map.shows(Place::of(&self.now.pose)) && map.shows_new(echoes);
+        let fits = |map: &Map| map.is_of(wide, high) && map.shows(Point::of(&self.now.pose)) && map.shows_new(echoes);
         if !self.map.as_ref().is_some_and(fits) {
             self.map = Some(Map::of(&self.world, &self.way, echoes, wide, high));
         }

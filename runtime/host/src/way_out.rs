@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use crate::Judgement;
 use crate::Observer as _;
 use crate::drive::Drive;
-use crate::report::Report;
+use crate::report::ReportWriter;
 use crate::required::Required;
 use crate::run_end::{RunEnd, RunFault, say};
 use crate::run_log::RunLog;
@@ -48,7 +48,12 @@ pub(crate) fn stop(drive: &mut dyn Drive, ending: RunEnd) -> (RunEnd, bool, Vec<
 /// Returns [`RunEnd::Over`] if the plan ended as the options and the robot's goal require, and [`RunEnd::Otherwise`] if
 /// it ended in another way. Returns the end of a run unchanged if its plan did not end. If the robot has a goal,
 /// reports its result.
-pub(crate) fn judge(drive: &mut dyn Drive, ending: RunEnd, required: &Required, report: &mut Report<'_>) -> RunEnd {
+pub(crate) fn judge(
+    drive: &mut dyn Drive,
+    ending: RunEnd,
+    required: &Required,
+    report: &mut ReportWriter<'_>,
+) -> RunEnd {
     if ending != RunEnd::Over {
         return ending;
     }
@@ -86,7 +91,7 @@ pub(crate) fn tell(
     ending: RunEnd,
     orderly: bool,
     mut faults: Vec<RunFault>,
-    report: &mut Report<'_>,
+    report: &mut ReportWriter<'_>,
     files: Files,
     err: &mut dyn Write,
 ) -> u8 {

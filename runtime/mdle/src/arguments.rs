@@ -42,7 +42,7 @@ pub(crate) use why::{Question, Why};
 #[derive(Debug, PartialEq)]
 pub(crate) enum Asked {
     /// `mdle run` or `mdle shell`.
-    Run(Box<Run>),
+    Run(Box<RunArguments>),
     /// `mdle navigate`.
     Navigate(Navigate),
     /// `mdle new-module`.
@@ -69,7 +69,7 @@ pub(crate) enum Asked {
 
 /// The arguments of `mdle run`.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Run {
+pub(crate) struct RunArguments {
     /// The plan's file; `-` is standard input.
     pub(crate) file: PathBuf,
     /// Name or folder of the target; `None` for the target of the `mdle.toml` beside the plan.
@@ -188,7 +188,7 @@ fn session(shell: &ArgMatches) -> SessionOptions {
 
 fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: Option<SessionOptions>) -> Asked {
     let (ears, head) = ears::ears(run);
-    Asked::Run(Box::new(Run {
+    Asked::Run(Box::new(RunArguments {
         file: run.get_one("file").cloned().unwrap_or_default(),
         target: run.get_one("target").cloned(),
         plan: run.get_one("plan").cloned(),
@@ -336,7 +336,7 @@ fn run_alone() -> Command {
 mod tests {
     use super::*;
 
-    fn parsed(line: &str) -> Run {
+    fn parsed(line: &str) -> RunArguments {
         match parse(line.split(' ').map(OsString::from).collect()).unwrap() {
             Asked::Run(run) => *run,
             Asked::Navigate(navigate) => panic!("{navigate:?}"),

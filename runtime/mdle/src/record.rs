@@ -14,7 +14,7 @@ pub(crate) type Record = Records<RecordSource>;
 
 /// A part of a turn in which the replay differs from the record.
 #[derive(Debug, PartialEq, Eq)]
-pub(crate) struct Part {
+pub(crate) struct DifferingPart {
     /// Name of the part.
     pub(crate) name: String,
     /// The part as recorded.
@@ -23,7 +23,7 @@ pub(crate) struct Part {
     pub(crate) replayed: String,
 }
 
-impl Part {
+impl DifferingPart {
     /// Returns a part called `name`; an empty text is shown as `none`.
     pub(crate) fn new(name: &str, recorded: &str, replayed: &str) -> Self {
         let [recorded, replayed] = [recorded, replayed].map(|text| if text.is_empty() { "none" } else { text });

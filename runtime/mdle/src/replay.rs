@@ -19,7 +19,7 @@ use crate::failure::{self, Failure};
 use crate::messages::counted;
 use crate::record::Record;
 use crate::recorded_files;
-use crate::replayed::{Difference, Outcome, Parting, ReplayTerms, replayed};
+use crate::replayed::{Difference, Parting, ReplayOutcome, ReplayTerms, replayed};
 use crate::replayer::RecordedRun;
 use crate::run_time::run_time;
 use crate::session;
@@ -54,9 +54,9 @@ pub(crate) fn replay(arguments: &Replay) -> Result<ExitCode, Failure> {
     let plan = arguments.plan.as_ref().and_then(|plan| plan.file_name()).map(|name| name.to_string_lossy());
     tell(&outcome, plan.as_deref().unwrap_or_default()).map_err(|error| failure::unprinted(&error))?;
     match outcome {
-        Outcome::Unread(_, error @ ReadError::System(_)) => Err(unread(&arguments.log, &error)),
-        Outcome::Same { .. } => Ok(ExitCode::SUCCESS),
-        Outcome::Differs(_) | Outcome::Unread(..) => Ok(ExitCode::from(DIFFERS)),
+        ReplayOutcome::Unread(_, error @ ReadError::System(_)) => Err(unread(&arguments.log, &error)),
+        ReplayOutcome::Same { .. } => Ok(ExitCode::SUCCESS),
+        ReplayOutcome::Differs(_) | ReplayOutcome::Unread(..) => Ok(ExitCode::from(DIFFERS)),
     }
 }
 
@@ -172,14 +172,14 @@ fn difference(input: &Input, begin: &Begin) -> Option<String> {
 }
 
 /// Prints the outcome for the plan called `plan`.
-fn tell(outcome: &Outcome, plan: &str) -> io::Result<()> {
+fn tell(outcome: &ReplayOutcome, plan: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match outcome {
-        Outcome::Same { turns, is_whole } => {
+        ReplayOutcome::Same { turns, is_whole } => {
             let end = if *is_whole { "" } else { "; the record has no end" };
             writeln!(out, "the same to the bit, {}{end}", counted(*turns, "turn"))
         }
-        Outcome::Differs(Difference { turn, t, parts, after }) => {
+        ReplayOutcome::Differs(Difference { turn, t, parts, after }) => {
             writeln!(out, "turn {turn} at {} s differs", mdle_runtime::trace::Seconds(*t))?;
             parts.iter().try_for_each(|part| {
                 let [name, recorded, replayed] = [&part.name, &part.recorded, &part.replayed].map(Printable);
@@ -187,7 +187,7 @@ fn tell(outcome: &Outcome, plan: &str) -> io::Result<()> {
             })?;
             out.write_all(side_by_side(after, plan).as_bytes())
         }
-        Outcome::Unread(turns, error) => {
+        ReplayOutcome::Unread(turns, error) => {
             writeln!(out, "the same to the bit, {}; then {error}", counted(*turns, "turn"))
         }
     }

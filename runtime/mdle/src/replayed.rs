@@ -4,12 +4,12 @@ use mdle_record::{Message, MessageKind, ReadError};
 use mdle_runtime::Nanos;
 
 use crate::failure::Failure;
-use crate::record::{OVER, Part};
+use crate::record::{DifferingPart, OVER};
 use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
 
 /// Outcome of a replay.
 #[derive(Debug)]
-pub(crate) enum Outcome {
+pub(crate) enum ReplayOutcome {
     /// All turns match the record.
     Same {
         /// Number of turns.
@@ -31,7 +31,7 @@ pub(crate) struct Difference {
     /// Time of the turn.
     pub(crate) t: Nanos,
     /// The parts that differ.
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Vec<DifferingPart>,
     /// The later turns with transitions, from this turn on; empty unless they were requested.
     pub(crate) after: Vec<Parting>,
 }
@@ -60,19 +60,19 @@ pub(crate) struct ReplayTerms {
 ///
 /// # Errors
 /// Fails if a plan that replaced another plan during the run cannot be compiled.
-pub(crate) fn replayed(replay: &mut dyn RecordedRun, terms: ReplayTerms) -> Result<Outcome, Failure> {
+pub(crate) fn replayed(replay: &mut dyn RecordedRun, terms: ReplayTerms) -> Result<ReplayOutcome, Failure> {
     let (mut turns, mut difference) = (0, None::<Difference>);
     while let Some(turn) = replay.turn() {
         let turn = match turn {
             Ok(turn) => turn,
             Err(Stop::Failed(failure)) => return Err(failure),
-            Err(Stop::Unread(error)) if difference.is_none() => return Ok(Outcome::Unread(turns, error)),
+            Err(Stop::Unread(error)) if difference.is_none() => return Ok(ReplayOutcome::Unread(turns, error)),
             Err(Stop::Unread(_)) => break,
         };
         let ReplayedTurn { recorded, messages, parts, laws, .. } = turn;
         let (number, t) = (recorded.number, recorded.t);
         if terms.until.is_some_and(|until| t > until) {
-            return Ok(difference.map_or(Outcome::Same { turns, is_whole: true }, Outcome::Differs));
+            return Ok(difference.map_or(ReplayOutcome::Same { turns, is_whole: true }, ReplayOutcome::Differs));
         }
         if difference.is_none() {
             if parts.is_empty() {
@@ -91,7 +91,7 @@ pub(crate) fn replayed(replay: &mut dyn RecordedRun, terms: ReplayTerms) -> Resu
             after.push(Parting { t, recorded, replayed: laws });
         }
     }
-    Ok(difference.map_or(Outcome::Same { turns, is_whole: replay.is_whole() }, Outcome::Differs))
+    Ok(difference.map_or(ReplayOutcome::Same { turns, is_whole: replay.is_whole() }, ReplayOutcome::Differs))
 }
 
 /// Returns the law that began with a transition of the record, or [`OVER`] for the end of the plan; `None` for any

@@ -12,11 +12,13 @@ use mdle_host::{
     Helm, Intervention, Microphones, Pace, Pilot as _, Refusal, RunTerms, StopRequest, Supervised, Texts, Time,
 };
 use mdle_host::{PilotFault, Transitions, Verdict};
-use mdle_record::{Applied, Begin, Change, Message, MessageKind, ReadError, RecordedTurn, Step, TurnsWithMessages};
+use mdle_record::{
+    Applied, Begin, Change, Message, MessageKind, ReadError, RecordedTransition, RecordedTurn, TurnsWithMessages,
+};
 use mdle_runtime::{Alphabet, Nanos, Plan, Sensed, Turn, Twist};
 
 use crate::failure::Failure;
-use crate::record::{OVER, Part, Record, RecordSource};
+use crate::record::{DifferingPart, OVER, Record, RecordSource};
 use crate::recorded_files;
 use crate::recorded_paths::RecordedPaths;
 use crate::safety::{Guarded, SafetyFile};
@@ -50,7 +52,7 @@ pub(crate) struct ReplayedTurn {
     /// The messages about the turn in the record.
     pub(crate) messages: Vec<Message>,
     /// The parts that differ from the record.
-    pub(crate) parts: Vec<Part>,
+    pub(crate) parts: Vec<DifferingPart>,
     /// The laws that began in the turn, in order; [`OVER`] for the end of the plan.
     pub(crate) laws: Vec<String>,
     /// Law of the atom in which the turn ended; empty if there is none.
@@ -236,11 +238,11 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
         (recorded, messages): (&RecordedTurn, &[Message]),
         made: &Result<Turn<()>, PilotFault>,
         transitions: &Transitions,
-    ) -> Vec<Part> {
+    ) -> Vec<DifferingPart> {
         let made = match made {
             Ok(made) => *made,
             Err(PilotFault::Stopped(sentence) | PilotFault::Panicked(sentence)) => {
-                return vec![Part::new("turn", "made", sentence)];
+                return vec![DifferingPart::new("turn", "made", sentence)];
             }
         };
         let applied = match made {
@@ -250,7 +252,9 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
         };
         let pilot = self.helm.pilot();
         let (state, number) = (pilot.machine().map_or(0, |machine| machine.state()), pilot.plan_number());
-        let steps = transitions.iter().map(|(made, fired)| Step::new(made, fired.iter().map(|(number, _)| *number)));
+        let steps = transitions
+            .iter()
+            .map(|(made, fired)| RecordedTransition::new(made, fired.iter().map(|(number, _)| *number)));
         let steps: Vec<_> = steps.collect();
         let (asked, sent) = (self.helm.asked().unwrap_or_default(), *self.helm.input());
         let rule = self.helm.intervention().map_or("", |intervention| intervention.rule);
@@ -261,7 +265,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
         let mut part = |name: &str, is_same: bool, texts: &dyn Fn() -> [String; 2]| {
             if !is_same {
                 let [recorded, replayed] = texts();
-                parts.push(Part::new(name, &recorded, &replayed));
+                parts.push(DifferingPart::new(name, &recorded, &replayed));
             }
         };
         let texts = pilot.machine().map(|machine| machine.plan());
@@ -308,12 +312,12 @@ fn recorded_transitions(messages: &[Message]) -> String {
 }
 
 /// Returns the replayed transitions of a turn as text, as a trace shows them.
-fn listed<A: Alphabet>(plan: Option<&LoadedPlan<A>>, steps: &[Step]) -> String {
+fn listed<A: Alphabet>(plan: Option<&LoadedPlan<A>>, steps: &[RecordedTransition]) -> String {
     steps.iter().map(|step| text(plan, step)).collect::<Vec<_>>().join("; ")
 }
 
-fn text<A: Alphabet>(plan: Option<&LoadedPlan<A>>, step: &Step) -> String {
-    let Step { from, scope, cause, to, operands } = step;
+fn text<A: Alphabet>(plan: Option<&LoadedPlan<A>>, step: &RecordedTransition) -> String {
+    let RecordedTransition { from, scope, cause, to, operands } = step;
     let Some(plan) = plan else { return format!("{from} to {to}") };
     let source = Plan::source(plan);
     let fired = operands.iter().filter_map(|number| source.operand(*scope, *number)).map(|words| words.text);

@@ -10,7 +10,7 @@ use mdle_files::{Input, InputError, Known, SafetyEntry, Settings, Target, read_p
 use mdle_host::{Call, Program, RecordedPlan};
 use mdle_runtime::Sensed;
 
-use crate::arguments::{MapOption, Run};
+use crate::arguments::{MapOption, RunArguments};
 use crate::evidence::{MapFiles, pose};
 use crate::failure::{self, Failure};
 use crate::link::{LinkFile, OpenRouter};
@@ -19,7 +19,7 @@ use crate::plans::texts;
 use crate::safety::SafetyFile;
 use crate::scenario;
 use crate::session;
-use crate::targets::{self, LinkedTarget, Ready};
+use crate::targets::{self, LinkedTarget, ReadyPlan};
 
 /// Exit status if a map could not be written.
 const FAULT: u8 = 3;
@@ -30,7 +30,7 @@ const FAULT: u8 = 3;
 /// # Errors
 /// Fails if the plan cannot be run.
 pub(crate) fn run(
-    arguments: Run,
+    arguments: RunArguments,
     library: &mut Library<Sensed>,
     open_router: Option<OpenRouter>,
 ) -> Result<ExitCode, Failure> {
@@ -119,7 +119,7 @@ fn no_call() -> Call {
     Call { words: Vec::new(), options: Vec::new(), read: Vec::new(), recorded, later_path: None }
 }
 
-impl Run {
+impl RunArguments {
     /// Returns `true` if the run has no module `heading`; `false` in a session, which may load one later.
     fn lacks_heading(&self, library: &Library<Sensed>) -> bool {
         self.ears.is_none() && self.session.is_none() && library.admits(HEADING).is_ok()
@@ -135,12 +135,12 @@ impl Run {
 
 /// Returns the entry of the settings for a safety file; `None` if there is none, or if the arguments name a safety
 /// file.
-fn safety_entry(arguments: &Run, settings: &Settings) -> Option<SafetyEntry> {
+fn safety_entry(arguments: &RunArguments, settings: &Settings) -> Option<SafetyEntry> {
     settings.safety().filter(|_| arguments.safety.is_none())
 }
 
 /// Reads the safety file of a run, if it has one.
-fn safety_file(arguments: &Run, settings: &Settings) -> Result<Option<SafetyFile>, Failure> {
+fn safety_file(arguments: &RunArguments, settings: &Settings) -> Result<Option<SafetyFile>, Failure> {
     if let Some(SafetyEntry { place, file }) = safety_entry(arguments, settings) {
         return SafetyFile::read(&file, &format!("{place}: ")).map(Some);
     }
@@ -149,7 +149,7 @@ fn safety_file(arguments: &Run, settings: &Settings) -> Result<Option<SafetyFile
 
 /// Returns the arguments that the settings add to a run with `arguments`, except the options of the run. `target` is
 /// the name of the run's target.
-fn determining(arguments: &Run, settings: &Settings, target: &str) -> Vec<String> {
+fn determining(arguments: &RunArguments, settings: &Settings, target: &str) -> Vec<String> {
     let target = arguments.target.is_none().then(|| ["--target".to_owned(), target.to_owned()]);
     let modules = modules::only_of_settings(settings, arguments);
     let modules = modules.flat_map(|module| ["--module".to_owned(), format!("{}={}", module.name, module.command)]);
@@ -159,7 +159,7 @@ fn determining(arguments: &Run, settings: &Settings, target: &str) -> Vec<String
 }
 
 /// Lists the inputs of a run besides the plan and the robot's outputs; empty if there are none.
-fn beside(arguments: &Run, ready: &dyn Ready) -> String {
+fn beside(arguments: &RunArguments, ready: &dyn ReadyPlan) -> String {
     let parts: [(bool, &str); 5] = [
         (ready.safety().is_some(), "safety rules"),
         (arguments.session.is_some(), "the commands of a session"),
@@ -173,13 +173,13 @@ fn beside(arguments: &Run, ready: &dyn Ready) -> String {
 /// Compiles and loads the plan `wanted`, or the only plan; returns its name and the plan. Messages go to standard
 /// error.
 fn compiled(
-    arguments: &Run,
+    arguments: &RunArguments,
     wanted: Option<&str>,
     linked: &LinkedTarget,
     target: &Arc<Target>,
     input: &mut Input,
     safety: Option<&SafetyFile>,
-) -> Result<(String, Box<dyn Ready>), Failure> {
+) -> Result<(String, Box<dyn ReadyPlan>), Failure> {
     if let Some(name) = wanted {
         input.must_have(name)?;
     }

@@ -23,7 +23,7 @@ const LAST_ANSWER: Duration = Duration::from_secs(1);
 const REFUSED: u8 = 1;
 
 /// Data that a run needs for its session.
-pub(crate) struct Seat {
+pub(crate) struct SessionInputs {
     pub(crate) desk: Desk,
     /// `true` if stepped time is paused at the beginning of the run.
     pub(crate) is_paused: bool,
@@ -39,7 +39,7 @@ pub(crate) struct Seat {
 pub(crate) fn held(
     options: &SessionOptions,
     plan: &Path,
-    run: impl FnOnce(Seat) -> ExitCode,
+    run: impl FnOnce(SessionInputs) -> ExitCode,
 ) -> Result<ExitCode, Failure> {
     let (hub, desk) = Desk::with_hub();
     let unheld = |error: io::Error| Failure::Usage(format!("the system gives no session: {error}"));
@@ -52,7 +52,7 @@ pub(crate) fn held(
     let stream = terminal.as_ref().map_or(stderr.as_fd(), |terminal| terminal.reports().as_fd());
     let stream = stream.try_clone_to_owned().map_err(unheld)?;
     let outcome = front_end(options, plan, hub, printing)?;
-    let status = run(Seat { desk, is_paused: options.is_paused, stream });
+    let status = run(SessionInputs { desk, is_paused: options.is_paused, stream });
     if let Some(terminal) = terminal {
         // The front end may be waiting for a person to type: the session ends without it.
         terminal.give_back();

@@ -25,7 +25,7 @@ use crate::record::Record;
 use crate::replayer::{RecordedRun, replay};
 use crate::route::{Route, drive};
 use crate::safety::{Guarded, SafetyFile};
-use crate::session::Seat;
+use crate::session::SessionInputs;
 use crate::way_recorder::WayRecorder;
 
 /// A robot whose driver is part of this program.
@@ -44,7 +44,7 @@ pub(crate) struct LinkedTarget {
 }
 
 /// Function that loads a plan for a target, with the safety rules of the plan's runs.
-type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
+type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn ReadyPlan>, Failure>;
 
 /// Function that runs the plan of a machine on the outputs of a record; plans are observed if the last argument
 /// is `true`.
@@ -54,7 +54,7 @@ type ReplayRecord = fn(Machine, &Sources, &Arc<Target>, &Begin, Record, bool) ->
 type DriveRoute = fn(&Route, &Arc<Target>, Call, &Library<Sensed>) -> Result<ExitCode, Failure>;
 
 /// A plan that is ready to run.
-pub(crate) trait Ready {
+pub(crate) trait ReadyPlan {
     /// Returns `true` if the plan reads attributes of modules.
     fn reads_modules(&self) -> bool;
 
@@ -83,7 +83,7 @@ pub(crate) trait Ready {
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
 
     /// Runs the plan, which is called `name`, in a session, with the modules in `library`.
-    fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: Seat) -> ExitCode;
+    fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: SessionInputs) -> ExitCode;
 }
 
 /// The robots whose drivers are part of this program.
@@ -197,7 +197,7 @@ impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
     }
 }
 
-impl<T, A> Ready for PlanFor<T, A>
+impl<T, A> ReadyPlan for PlanFor<T, A>
 where
     T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>>,
     A: EngineAlphabet<Output = Sensed, Input = Twist>,
@@ -251,8 +251,8 @@ where
         mdle_host::run_piloted::<T, _>(name, call, &plan, engine, Some(supervision))
     }
 
-    fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: Seat) -> ExitCode {
-        let Seat { desk, is_paused, stream } = seat;
+    fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: SessionInputs) -> ExitCode {
+        let SessionInputs { desk, is_paused, stream } = seat;
         let (plan, desk) = (|| self.loaded.plan(), Mutex::new(Some(desk)));
         let engine = |terms: &RunTerms| self.loading(name, library, terms, true);
         let supervisor = |terms: &RunTerms| {
@@ -273,7 +273,7 @@ fn load<T, A>(
     input: &Input,
     target: &Arc<Target>,
     safety: Option<&SafetyFile>,
-) -> Result<Box<dyn Ready>, Failure>
+) -> Result<Box<dyn ReadyPlan>, Failure>
 where
     T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>> + 'static,
     A: EngineAlphabet<Output = Sensed, Input = Twist>,

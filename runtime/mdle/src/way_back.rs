@@ -26,11 +26,11 @@ type Place = [f64; 2];
 
 /// The path that is being driven.
 #[derive(Debug, Default)]
-pub(crate) struct Way {
+pub(crate) struct DrivenPath {
     places: Vec<Place>,
 }
 
-impl Way {
+impl DrivenPath {
     /// Records the pose of the robot, by odometry.
     pub(crate) fn went(&mut self, here: &Pose) {
         let place = [here.x.0, here.y.0];
@@ -129,8 +129,8 @@ mod tests {
     use super::*;
 
     /// Returns a way along these places, on which the robot rests at each place.
-    fn way(places: impl Iterator<Item = Place>) -> Way {
-        let mut way = Way::default();
+    fn way(places: impl Iterator<Item = Place>) -> DrivenPath {
+        let mut way = DrivenPath::default();
         for [x, y] in places {
             for _ in 0..3 {
                 way.went(&Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) });

@@ -5,7 +5,7 @@ use mdle_engine::Recorder;
 use mdle_host::setpoints;
 use mdle_runtime::{Frame, PathStore, Pose, Sensed, StoredPath, Twist};
 
-use crate::way_back::Way;
+use crate::way_back::DrivenPath;
 
 /// Maximum number of setpoints of all paths that a robot records; they are kept until the program ends.
 const SETPOINTS: usize = 2_000_000;
@@ -17,7 +17,7 @@ pub(crate) struct WayRecorder {
     /// Maximum speeds of a path.
     fastest: Twist,
     /// The path driven under the current law; `None` if this law is not recorded.
-    way: Option<Way>,
+    way: Option<DrivenPath>,
     /// Frame of the plan; `None` before the first turn.
     frame: Option<Frame>,
     /// The robot's paths after the first recording; `None` before.

@@ -5,7 +5,7 @@ use mdle_runtime::{Nanos, Sensed};
 
 use crate::bytes::{Bytes, put_u32, put_u64};
 use crate::turn::{self, TurnMade, Undecoded};
-use crate::{Begin, Chain, RecordedTurn, Step};
+use crate::{Begin, Chain, RecordedTransition, RecordedTurn};
 
 /// Length of a frame's header, in bytes.
 const HEAD: usize = 5;
@@ -50,7 +50,7 @@ impl Frames {
         &mut self,
         made: TurnMade<'_>,
         y: &Sensed,
-        steps: impl ExactSizeIterator<Item = Step>,
+        steps: impl ExactSizeIterator<Item = RecordedTransition>,
         to: &mut Vec<u8>,
     ) {
         self.content.clear();

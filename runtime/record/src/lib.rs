@@ -21,5 +21,5 @@ mod writer;
 pub use begin::{Begin, Constants, SafetyTexts};
 pub use change::{Change, Overruled};
 pub use reader::{Message, MessageKind, ReadError, Records, TurnsWithMessages};
-pub use turn::{Applied, Chain, RecordedTurn, Step, TurnMade};
+pub use turn::{Applied, Chain, RecordedTransition, RecordedTurn, TurnMade};
 pub use writer::RecordFile;

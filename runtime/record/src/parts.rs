@@ -13,7 +13,7 @@ const STEP: usize = 1 << 18;
 
 /// A part of an MCAP file.
 #[derive(Debug)]
-pub(crate) enum Part {
+pub(crate) enum FilePart {
     /// A channel: its number, its topic, and the encoding of its messages.
     Channel(u16, String, String),
     /// A message: the number of its channel, and its content.
@@ -74,7 +74,7 @@ impl<R: Read> Parts<R> {
     }
 
     /// Returns the next part; `None` at the end of the file, or where it was cut short.
-    pub(crate) fn next(&mut self) -> Result<Option<Part>, Unreadable> {
+    pub(crate) fn next(&mut self) -> Result<Option<FilePart>, Unreadable> {
         loop {
             if let Some(chunk) = &mut self.chunk {
                 match chunk.next()? {
@@ -150,7 +150,7 @@ impl Chunk {
 
     /// Returns the next channel or message. Damage of the chunk is reported at its end, so that the message can name
     /// the changed turn.
-    fn next(&mut self) -> Result<Option<Part>, Unreadable> {
+    fn next(&mut self) -> Result<Option<FilePart>, Unreadable> {
         const HEAD: usize = 9;
         let changed = || {
             let why = "the sum of one of its seconds differs, so that bytes besides its turns were changed";
@@ -166,10 +166,10 @@ impl Chunk {
             }
             match mcap::parse_record(*opcode, data) {
                 Ok(Record::Channel(channel)) => {
-                    return Ok(Some(Part::Channel(channel.id, channel.topic, channel.message_encoding)));
+                    return Ok(Some(FilePart::Channel(channel.id, channel.topic, channel.message_encoding)));
                 }
                 Ok(Record::Message { header, data }) => {
-                    return Ok(Some(Part::Message(header.channel_id, data.into_owned())));
+                    return Ok(Some(FilePart::Message(header.channel_id, data.into_owned())));
                 }
                 Ok(_) => {}
                 Err(_) if !self.is_sound => return Err(changed()),

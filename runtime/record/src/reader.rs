@@ -4,7 +4,7 @@ use std::fmt;
 use std::io::{self, Read};
 
 use crate::frames::Turns;
-use crate::parts::{Part, Parts, Unreadable};
+use crate::parts::{FilePart, Parts, Unreadable};
 use crate::turn::Undecoded;
 use crate::writer::{BEGIN, TURN};
 use crate::{Begin, RecordedTurn};
@@ -153,7 +153,7 @@ impl<R: Read> Records<R> {
         };
         while let Some(part) = self.parts.next().map_err(unreadable)? {
             match part {
-                Part::Channel(id, topic, encoding) => match (topic.as_str(), encoding) {
+                FilePart::Channel(id, topic, encoding) => match (topic.as_str(), encoding) {
                     ("/exact/begin", encoding) if encoding == BEGIN => self.channels[0] = Some(id),
                     ("/exact/turn", encoding) if encoding == TURN => self.channels[1] = Some(id),
                     ("/plan/transitions", _) => self.channels[2] = Some(id),
@@ -162,7 +162,7 @@ impl<R: Read> Records<R> {
                     ("/exact/turn", other) => return Err(ReadError::OtherVersion(other, TURN)),
                     _ => {}
                 },
-                Part::Message(channel, data) => {
+                FilePart::Message(channel, data) => {
                     let text = || String::from_utf8_lossy(&data).into_owned();
                     match self.channels.iter().position(|known| *known == Some(channel)) {
                         Some(2) => self.messages.push(Message { kind: MessageKind::Transition, json: text() }),

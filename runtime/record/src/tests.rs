@@ -15,7 +15,9 @@ use std::rc::Rc;
 use crate::bytes::Bytes;
 use crate::frames::{Frames, Turns, first};
 use crate::turn::{Undecoded, put, take};
-use crate::{Applied, Begin, Change, Overruled, ReadError, RecordFile, Records, SafetyTexts, Step, TurnMade};
+use crate::{
+    Applied, Begin, Change, Overruled, ReadError, RecordFile, RecordedTransition, Records, SafetyTexts, TurnMade,
+};
 
 fn begin() -> Begin {
     let files = vec![("p.mdle".to_owned(), "{ P (null) }".to_owned())];
@@ -93,7 +95,7 @@ fn encoded() -> (Vec<u8>, Vec<u8>) {
         changes: &changes,
         overruled,
     };
-    let step = Step { from: 1, scope: 2, cause: Cause::Fired(1), to: 5, operands: vec![4, 7] };
+    let step = RecordedTransition { from: 1, scope: 2, cause: Cause::Fired(1), to: 5, operands: vec![4, 7] };
     put(made, (&output(), None), std::iter::once(step), &mut turn);
     (first, turn)
 }

@@ -55,7 +55,7 @@ pub struct RecordedTurn {
     /// State of the plan at the end of the turn; 0 if no plan was active.
     pub state: u64,
     /// Transitions of the turn, in order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<RecordedTransition>,
     /// Changes that influenced the turn, besides its output, in order.
     pub changes: Vec<Change>,
     /// Input that a safety rule changed.
@@ -75,7 +75,7 @@ pub enum Applied {
 
 /// A transition of a turn, with the numbers of the operands that fired.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Step {
+pub struct RecordedTransition {
     /// State that the transition leaves.
     pub from: u64,
     /// Bracket of the scope that ended.
@@ -88,7 +88,7 @@ pub struct Step {
     pub operands: Vec<u32>,
 }
 
-impl Step {
+impl RecordedTransition {
     /// Returns the recorded form of a transition.
     #[must_use]
     pub fn new(transition: &Transition, operands: impl IntoIterator<Item = u32>) -> Self {
@@ -101,7 +101,7 @@ impl Step {
 pub(crate) fn put(
     made: TurnMade<'_>,
     (y, before): (&Sensed, Option<&Sensed>),
-    steps: impl ExactSizeIterator<Item = Step>,
+    steps: impl ExactSizeIterator<Item = RecordedTransition>,
     to: &mut Vec<u8>,
 ) {
     let TurnMade { number, t, sent, applied, plan, state, changes, overruled } = made;
@@ -119,7 +119,7 @@ pub(crate) fn put(
     put_u64(to, plan);
     put_u64(to, state);
     put_u32(to, u32::try_from(steps.len()).unwrap_or(u32::MAX));
-    for Step { from, scope, cause, to: entered, operands } in steps {
+    for RecordedTransition { from, scope, cause, to: entered, operands } in steps {
         put_u64(to, from);
         put_u32(to, scope);
         to.push(u8::from(matches!(cause, Cause::Completed(_))));
@@ -147,7 +147,7 @@ pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Co
         let (left, scope, is_completed) = (from.u64()?, from.u32()?, from.u8()? != 0);
         let level = u16::try_from(from.u32()?).ok()?;
         let cause = if is_completed { Cause::Completed(level) } else { Cause::Fired(level) };
-        Some(Step { from: left, scope, cause, to: from.u64()?, operands: from.list(Bytes::u32)? })
+        Some(RecordedTransition { from: left, scope, cause, to: from.u64()?, operands: from.list(Bytes::u32)? })
     })?;
     Some(RecordedTurn { number, t, y, sent, applied, plan, state, steps, changes, overruled })
 }

@@ -22,7 +22,7 @@ pub use driven::{Driven, driven};
 pub use effects::{Effect, Speed, untrue_effects};
 pub use fault::{Ailment, At, Fault};
 pub use faulty::Faulty;
-pub use options::Options;
+pub use options::EmulatorOptions;
 pub use orders::{Order, Orders};
 pub use port::Port;
 pub use program::program;

@@ -12,7 +12,7 @@ use crate::fault::At;
 
 /// Values of the command-line options of all robot emulators.
 #[derive(Debug)]
-pub struct Options {
+pub struct EmulatorOptions {
     pub(crate) world: String,
     pub(crate) start: Option<Start>,
     pub(crate) robots: Vec<NamedStart>,
@@ -22,14 +22,14 @@ pub struct Options {
     pub(crate) faults: Vec<At>,
 }
 
-impl Options {
+impl EmulatorOptions {
     /// Returns `command` with the options of all robot emulators, and their version.
     #[must_use]
     pub fn arguments(command: Command) -> Command {
         of_behavior(of_robots(command.version(env!("CARGO_PKG_VERSION"))))
     }
 
-    /// Returns the options in `matches`, which a command with [`Options::arguments`] has parsed.
+    /// Returns the options in `matches`, which a command with [`EmulatorOptions::arguments`] has parsed.
     #[must_use]
     pub fn of(matches: &ArgMatches) -> Self {
         Self {
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn each_option_is_described_in_a_line() {
-        let command = Options::arguments(Command::new("emulator"));
+        let command = EmulatorOptions::arguments(Command::new("emulator"));
         let helps: Vec<_> = command.get_arguments().map(|option| option.get_help().unwrap_or_default()).collect();
         assert_eq!(helps.len(), 7);
         for help in helps.iter().map(ToString::to_string) {
@@ -161,8 +161,9 @@ mod tests {
     fn options_are_read_from_their_arguments() {
         let arguments = ["emulator", "--robot", "one=1,0,0", "--robot", "two=2,0,90", "--seed", "7", "--link", "line"];
         let more = ["--lockstep", "100ms", "--fault", "close@2", "--fault", "noise=40@3"];
-        let matches = Options::arguments(Command::new("emulator")).get_matches_from(arguments.iter().chain(&more));
-        let options = Options::of(&matches);
+        let matches =
+            EmulatorOptions::arguments(Command::new("emulator")).get_matches_from(arguments.iter().chain(&more));
+        let options = EmulatorOptions::of(&matches);
         let names: Vec<_> = options.robots.iter().map(|NamedStart(name, _)| name.as_str()).collect();
         assert_eq!((&*options.world, names, options.seed), ("office", vec!["one", "two"], Some(7)));
         assert_eq!((options.link, options.lockstep), (Some("line".into()), Some(Duration::from_millis(100))));

@@ -12,7 +12,7 @@ use mdle_simulator::{Body, Make, Simulated, World};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::faulty::Faulty;
-use crate::options::{NamedStart, Options};
+use crate::options::{EmulatorOptions, NamedStart};
 use crate::port::Port;
 use crate::serve::{Embodied, Emulated, Pace};
 use crate::several::{Seat, Several};
@@ -25,7 +25,7 @@ const LARGEST: u64 = 64_000_000;
 pub fn program<R: Emulated + Embodied>(
     name: &str,
     body: Body,
-    options: &Options,
+    options: &EmulatorOptions,
     step: fn(Pace) -> Duration,
     made: impl Fn(Simulated, Duration) -> Result<R, String>,
 ) -> ExitCode {
@@ -42,7 +42,7 @@ pub fn program<R: Emulated + Embodied>(
 fn run<R: Emulated + Embodied>(
     name: &str,
     body: Body,
-    options: &Options,
+    options: &EmulatorOptions,
     step: fn(Pace) -> Duration,
     made: impl Fn(Simulated, Duration) -> Result<R, String>,
 ) -> Result<(), String> {
@@ -77,7 +77,7 @@ fn run<R: Emulated + Embodied>(
 /// Returns the bodies that the options define, each with its name if it has one. Each body detects the others by their
 /// footprints.
 fn bodies(
-    options: &Options,
+    options: &EmulatorOptions,
     world: &World,
     body: Body,
     step: Duration,

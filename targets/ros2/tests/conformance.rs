@@ -19,7 +19,7 @@ use mdle_ros2::source::{Source, inputs};
 use mdle_ros2::{Fault, Link, Pacing, Ros2, alphabet};
 use mdle_runtime::{Meters, Nanos, PathStore, Pose, Radians, Twist};
 use mdle_serial::Moment;
-use mdle_simulator::{Place, Walls, World};
+use mdle_simulator::{Point, Walls, World};
 
 /// Number of rays of a scan.
 const RAYS: u32 = 720;
@@ -71,7 +71,7 @@ impl Base {
         let heading = Radians(self.pose.theta.0 + turn / 2.0);
         let next = self.pose.towards(heading, Meters(self.velocity.v.0 * seconds));
         self.pose.theta.0 += turn;
-        self.is_pressed = self.walls.clearance(Place::of(&next), REACH) < self.config.body_radius;
+        self.is_pressed = self.walls.clearance(Point::of(&next), REACH) < self.config.body_radius;
         if !self.is_pressed {
             (self.pose.x, self.pose.y) = (next.x, next.y);
         }
@@ -102,7 +102,7 @@ impl Base {
         let step = 2.0 * PI / f64::from(RAYS);
         let range = |ray: u32| {
             let direction = Radians(self.pose.theta.0 - PI + f64::from(ray) * step);
-            self.walls.ray(Place::of(&self.pose), direction, REACH).map_or(f32::INFINITY, |range| range as f32)
+            self.walls.ray(Point::of(&self.pose), direction, REACH).map_or(f32::INFINITY, |range| range as f32)
         };
         LaserScan {
             header: self.header(),

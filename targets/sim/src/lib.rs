@@ -10,9 +10,9 @@ mod setup;
 mod target;
 
 pub use mdle_simulator::{
-    Body, Charger, Crowd, Drawing, Fault, FleetDrawing, Footprint, Form, Goal, Groups, Heard, Input, Make, Others,
-    Outline, Output, Part, Place, RobotEars, Schedule, Sensed, SignalCurve, Simulated, Start, StartError, StartNoise,
-    Stop, Thing, TimeChart, TripDrawing, Walls, World, WorldError, Zone, alphabet,
+    Body, Charger, Crowd, Drawing, Fault, FleetDrawing, Footprint, Form, Goal, Groups, Heard, Input, Make, ModelPart,
+    Others, Outline, Output, Point, RobotEars, Schedule, Sensed, SignalCurve, Simulated, Start, StartError, StartNoise,
+    Thing, TimeChart, TripDrawing, Walls, Waypoint, World, WorldError, Zone, alphabet,
 };
 pub use observed::Observed;
 pub use target::Sim;

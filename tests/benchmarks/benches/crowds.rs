@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
-use mdle_sim::{Place, Walls, World};
+use mdle_sim::{Point, Walls, World};
 use mdle_tests::executable::target;
 use mdle_tests::repository::root;
 
@@ -154,9 +154,9 @@ fn rays(robots: u32) -> f64 {
     while seconds_of(own).unwrap_or_default() - begun < 1.0 {
         for _ in 0..100_000 {
             let robot = (number % u64::from(robots)) as f64;
-            let from = Place { x: SPACING * (0.5 + robot % rows), y: SPACING * (0.5 + (robot / rows).floor()) };
+            let from = Point { x: SPACING * (0.5 + robot % rows), y: SPACING * (0.5 + (robot / rows).floor()) };
             let (sin, cos) = libm::sincos(number as f64);
-            heard += walls.cast(from, Place { x: cos, y: sin }, black_box(REACH)).unwrap_or_default();
+            heard += walls.cast(from, Point { x: cos, y: sin }, black_box(REACH)).unwrap_or_default();
             number += 1;
         }
     }

@@ -5,7 +5,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use mdle_runtime::{RadiansPerSecond, Robot, Twist};
-use mdle_sim::{Body, Make, Part, Place, Simulated, Walls, World};
+use mdle_sim::{Body, Make, ModelPart, Point, Simulated, Walls, World};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -20,7 +20,7 @@ fn uniform(random: &mut ChaCha8Rng) -> f64 {
 
 /// Returns a world of walls, 0.5 to 2 m long and scattered over a square with the side `side`, and random rays in this
 /// world.
-fn scattered(walls: usize, side: f64) -> (World, Vec<(Place, Place)>) {
+fn scattered(walls: usize, side: f64) -> (World, Vec<(Point, Point)>) {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut text = String::new();
     for _ in 0..walls {
@@ -30,9 +30,9 @@ fn scattered(walls: usize, side: f64) -> (World, Vec<(Place, Place)>) {
         text += &format!("[[wall]]\npoints = [[{x}, {y}], [{}, {}]]\n", x + length * cos, y + length * sin);
     }
     let rays = (0..RAYS).map(|_| {
-        let from = Place { x: side * uniform(&mut random), y: side * uniform(&mut random) };
+        let from = Point { x: side * uniform(&mut random), y: side * uniform(&mut random) };
         let (sin, cos) = libm::sincos(std::f64::consts::TAU * uniform(&mut random));
-        (from, Place { x: cos, y: sin })
+        (from, Point { x: cos, y: sin })
     });
     let rays = rays.collect();
     (World::parse("scattered", &text).expect("a good world"), rays)
@@ -65,7 +65,7 @@ impl Cells {
         Self { taken, count, cell }
     }
 
-    fn ray(&self, from: Place, way: Place, most: f64) -> Option<f64> {
+    fn ray(&self, from: Point, way: Point, most: f64) -> Option<f64> {
         let (mut column, mut row) = ((from.x / self.cell) as usize, (from.y / self.cell) as usize);
         let next = |from: f64, way: f64, cell: usize| {
             let border = (cell + usize::from(way > 0.0)) as f64 * self.cell;
@@ -116,7 +116,7 @@ fn rays(criterion: &mut Criterion) {
 fn robot(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("robot, one second");
     let world = World::office().expect("our own floor");
-    let every_turn = vec![Part::Order];
+    let every_turn = vec![ModelPart::Order];
     for (name, body, without) in
         [("ideal", Body::Ideal, vec![]), ("scout", Body::Scout, vec![]), ("scout, full rings", Body::Scout, every_turn)]
     {

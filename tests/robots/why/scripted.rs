@@ -8,7 +8,7 @@ use std::sync::Arc;
 use mdle_compiler::load::{self, Loaded};
 use mdle_files::Target;
 use mdle_record::frames::Frames;
-use mdle_record::{Applied, Begin, RecordFile, Step, TurnMade};
+use mdle_record::{Applied, Begin, RecordFile, RecordedTransition, TurnMade};
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{
     Compass, Machine, Measured, Meters, Mount, Nanos, PathStore, Ping, Pings, Plan as _, Pose, Published, Sensed,
@@ -86,7 +86,7 @@ impl Scripted {
 /// Transitions of a turn, in the form in which a record stores them.
 #[derive(Default)]
 struct Steps {
-    steps: Vec<Step>,
+    steps: Vec<RecordedTransition>,
     operands: Vec<u32>,
 }
 
@@ -96,7 +96,7 @@ impl Watch for Steps {
     }
 
     fn transition(&mut self, transition: Transition) {
-        self.steps.push(Step::new(&transition, std::mem::take(&mut self.operands)));
+        self.steps.push(RecordedTransition::new(&transition, std::mem::take(&mut self.operands)));
     }
 }
 

@@ -80,7 +80,7 @@ enum Request {
     Trial(Setup),
     /// Perform a complete run, and return one of its files.
     Export {
-        what: export::Kind,
+        what: export::ExportKind,
         #[serde(flatten)]
         setup: Setup,
     },

@@ -7,7 +7,7 @@ use mdle_simulator::alphabet::Alphabet;
 use mdle_simulator::{Goal, Simulated};
 
 use crate::plan::Plan;
-use crate::setup::{PERIOD, Ready};
+use crate::setup::{PERIOD, ReadyRun};
 
 /// A run in progress.
 pub(crate) struct Course {
@@ -28,12 +28,12 @@ pub(crate) struct Course {
     /// `true` if no law has been applied since the current atom was entered.
     fresh: bool,
     /// Cause of the end, once the run has ended.
-    pub(crate) end: Option<End>,
+    pub(crate) end: Option<CourseEnd>,
 }
 
 /// The reason why a run has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum End {
+pub(crate) enum CourseEnd {
     /// The plan is over.
     Over,
     /// The time limit was reached.
@@ -87,7 +87,7 @@ impl Watch for Seen {
 
 impl Course {
     /// Returns a run whose robot is at its start. The moments of turns are recorded if `looks` is `true`.
-    pub(crate) fn new(plan: &Plan, ready: &Ready, looks: bool) -> Result<Self, String> {
+    pub(crate) fn new(plan: &Plan, ready: &ReadyRun, looks: bool) -> Result<Self, String> {
         let waiting = if looks { plan.looked_at() } else { plan.looked_at().unobserved() };
         Ok(Self {
             robot: ready.robot()?,
@@ -116,7 +116,7 @@ impl Course {
                 Some(Exchange { t, y, hits })
             }
             Err(fault) => {
-                self.end = Some(End::Fault(fault.to_string()));
+                self.end = Some(CourseEnd::Fault(fault.to_string()));
                 None
             }
         }
@@ -139,9 +139,9 @@ impl Course {
         let has_begun = matches!(turn, Turn::Law(_)) && std::mem::take(&mut self.fresh);
         let began = machine.atom().filter(|_| has_begun);
         if turn == Turn::Over {
-            self.end = Some(End::Over);
+            self.end = Some(CourseEnd::Over);
         } else if t >= self.limit {
-            self.end = Some(End::Limit);
+            self.end = Some(CourseEnd::Limit);
         }
         Some(Made { number, t, turn, began, moments })
     }
@@ -149,7 +149,7 @@ impl Course {
     /// Sends the null input, unless the robot has a fault.
     pub(crate) fn release(&mut self) -> Option<Exchange> {
         self.input = Twist::default();
-        if matches!(self.end, Some(End::Fault(_))) { None } else { self.exchange() }
+        if matches!(self.end, Some(CourseEnd::Fault(_))) { None } else { self.exchange() }
     }
 
     /// Stops the robot.

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::causes;
-use crate::course::{Course, End, Exchange, Made};
+use crate::course::{Course, CourseEnd, Exchange, Made};
 use crate::plan::Plan;
 use crate::setup::{PERIOD, Setup};
 
@@ -19,7 +19,7 @@ const MOST: usize = 128 << 20;
 /// A file of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Kind {
+pub(crate) enum ExportKind {
     /// JSON lines of `--log`.
     Log,
     /// Table of `--trail`.
@@ -31,15 +31,15 @@ pub(crate) enum Kind {
 }
 
 /// Repeats a run, and returns its file of this kind.
-pub(crate) fn export(kind: Kind, setup: &Setup) -> Result<Value, String> {
+pub(crate) fn export(kind: ExportKind, setup: &Setup) -> Result<Value, String> {
     let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;
     let mut course = Course::new(&plan, &ready, false)?;
     let words = setup.in_words(&ready.make);
     let mut files = Files {
         kind,
-        text: if kind == Kind::Trail { "t,x,y,heading\n".to_owned() } else { String::new() },
-        drawing: Drawing::of(&course.robot, &ready.world, words, kind == Kind::Record),
+        text: if kind == ExportKind::Trail { "t,x,y,heading\n".to_owned() } else { String::new() },
+        drawing: Drawing::of(&course.robot, &ready.world, words, kind == ExportKind::Record),
     };
     let mut t = Nanos::ZERO;
     while course.end.is_none() {
@@ -53,11 +53,11 @@ pub(crate) fn export(kind: Kind, setup: &Setup) -> Result<Value, String> {
         }
     }
     let (is_over, by) = match &course.end {
-        Some(End::Over) => {
+        Some(CourseEnd::Over) => {
             (true, course.machine.as_ref().map_or_else(String::new, |m| causes::last(m.plan(), &course.seen)))
         }
-        Some(End::Fault(_)) => (false, "a fault".to_owned()),
-        Some(End::Limit) | None => (false, "--timeout".to_owned()),
+        Some(CourseEnd::Fault(_)) => (false, "a fault".to_owned()),
+        Some(CourseEnd::Limit) | None => (false, "--timeout".to_owned()),
     };
     files.drawing.ended(course.plan_name(), is_over, &by, t.max(Nanos(course.turns.saturating_sub(1) * PERIOD.0)));
     if let Some(exchange) = course.release() {
@@ -70,7 +70,7 @@ pub(crate) fn export(kind: Kind, setup: &Setup) -> Result<Value, String> {
 
 /// The files that are being written.
 struct Files {
-    kind: Kind,
+    kind: ExportKind,
     text: String,
     drawing: Drawing,
 }
@@ -78,7 +78,7 @@ struct Files {
 impl Files {
     fn exchanged(&mut self, course: &Course, exchange: &Exchange) {
         let Exchange { t, y, hits } = exchange;
-        if self.kind == Kind::Trail {
+        if self.kind == ExportKind::Trail {
             let pose = course.robot.pose();
             // Writing to a string cannot fail.
             let _ = writeln!(self.text, "{},{},{},{}", t.seconds(), pose.x.0, pose.y.0, pose.theta.degrees());
@@ -92,7 +92,7 @@ impl Files {
         if let Some((atom, written)) = made.began.and_then(|atom| Some((atom, plan.fsm().atoms.get(atom as usize)?))) {
             self.drawing.began(written.state, plan.law(atom), made.t);
         }
-        if self.kind != Kind::Log {
+        if self.kind != ExportKind::Log {
             return;
         }
         let applied = match made.turn {
@@ -121,9 +121,9 @@ impl Files {
 
     fn finished(self) -> String {
         match self.kind {
-            Kind::Log | Kind::Trail => self.text,
-            Kind::Plot => self.drawing.picture(),
-            Kind::Record => self.drawing.animation(),
+            ExportKind::Log | ExportKind::Trail => self.text,
+            ExportKind::Plot => self.drawing.picture(),
+            ExportKind::Record => self.drawing.animation(),
         }
     }
 }

@@ -3,7 +3,7 @@
 use mdle_simulator::{Form, Goal, Walls, World, Zone};
 use serde_json::{Value, json};
 
-use crate::setup::Ready;
+use crate::setup::ReadyRun;
 
 /// Maximum number of corners of a world that is drawn.
 const CORNERS_MOST: usize = 200_000;
@@ -16,7 +16,7 @@ pub(crate) fn floor(text: &str) -> Result<Value, String> {
 }
 
 /// Returns the robot's pose at the start, and its form.
-fn robot(ready: &Ready) -> Value {
+fn robot(ready: &ReadyRun) -> Value {
     let form = ready.make.form();
     let (half_length, half_width) = form.halves();
     let pose = ready.begins;
@@ -30,7 +30,7 @@ fn robot(ready: &Ready) -> Value {
 ///
 /// # Errors
 /// Fails if the world is too large to be drawn.
-pub(crate) fn ready(ready: &Ready) -> Result<Value, String> {
+pub(crate) fn ready(ready: &ReadyRun) -> Result<Value, String> {
     Ok(json!({ "floor": drawn(&ready.world, ready.goal)?, "robot": robot(ready) }))
 }
 
@@ -43,7 +43,7 @@ fn drawn(world: &World, goal: Option<Goal>) -> Result<Value, String> {
     if corners > CORNERS_MOST {
         return Err(format!("world: {corners} corners are too many to be drawn; expected at most {CORNERS_MOST}"));
     }
-    let points = |points: &[mdle_simulator::Place]| points.iter().map(|place| json!([place.x, place.y])).collect();
+    let points = |points: &[mdle_simulator::Point]| points.iter().map(|place| json!([place.x, place.y])).collect();
     let outline = |outline: &mdle_simulator::Outline| {
         let corners: Value = points(&outline.points);
         json!({ "name": outline.name, "solid": outline.solid, "points": corners })

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use mdle_compiler::load::Moment;
 use mdle_runtime::capability::SonarRing as _;
 use mdle_runtime::{Cause, Nanos, SONARS, SonarId};
-use mdle_simulator::{Place, echoes};
+use mdle_simulator::{Point, echoes};
 use serde_json::{Value, json};
 
 use crate::causes::cause;
@@ -20,7 +20,7 @@ pub(crate) fn frame(course: &Course, exchange: &Exchange, made: &Made, before: O
     let Exchange { t, y, .. } = exchange;
     let pose = course.robot.pose();
     let ranges: Vec<Value> = (0..SONARS).map(|number| range(exchange, number)).collect();
-    let heard = echoes(&pose, y, before).into_iter().flatten().map(|Place { x, y }| json!([round(x), round(y)]));
+    let heard = echoes(&pose, y, before).into_iter().flatten().map(|Point { x, y }| json!([round(x), round(y)]));
     let gone: Vec<Value> =
         course.robot.gone().map(|gone| gone.map_or(Value::Null, |at| json!([round(at.x), round(at.y)]))).collect();
     json!({

@@ -6,9 +6,9 @@ use mdle_runtime::{Nanos, Plan as _};
 use serde_json::{Value, json};
 
 use crate::causes;
-use crate::course::{Course, End};
+use crate::course::{Course, CourseEnd};
 use crate::plan::Plan;
-use crate::setup::{PERIOD, Ready, Setup};
+use crate::setup::{PERIOD, ReadyRun, Setup};
 use crate::{floor, frame, why};
 
 /// Maximum number of moments of a turn that are shown.
@@ -31,7 +31,7 @@ const LIMITS: Limits = Limits { moments: 128 << 20, turns: 64 << 20 };
 /// A run, with the data that explain each of its turns.
 pub(crate) struct Run {
     plan: Plan,
-    ready: Ready,
+    ready: ReadyRun,
     course: Course,
     /// Moments of each turn, from the first turn until the limit was reached.
     moments: Vec<Vec<Moment>>,
@@ -137,12 +137,12 @@ impl Run {
         match &self.course.end {
             None if self.is_full => json!({ "how": "full" }),
             None => Value::Null,
-            Some(End::Over) => {
+            Some(CourseEnd::Over) => {
                 let by = self.course.machine.as_ref().map(|machine| causes::last(machine.plan(), &self.course.seen));
                 json!({ "how": "over", "by": by, "judged": judged })
             }
-            Some(End::Limit) => json!({ "how": "limit", "judged": judged }),
-            Some(End::Fault(sentence)) => json!({ "how": "fault", "by": sentence }),
+            Some(CourseEnd::Limit) => json!({ "how": "limit", "judged": judged }),
+            Some(CourseEnd::Fault(sentence)) => json!({ "how": "fault", "by": sentence }),
         }
     }
 

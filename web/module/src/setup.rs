@@ -42,7 +42,7 @@ pub(crate) struct Setup {
 }
 
 /// Validated world, body and start of a run.
-pub(crate) struct Ready {
+pub(crate) struct ReadyRun {
     pub(crate) world: World,
     pub(crate) make: Make,
     /// Start pose, which includes the random offset.
@@ -61,7 +61,7 @@ impl Setup {
     ///
     /// # Errors
     /// Fails if a field is invalid; the message names the field.
-    pub(crate) fn ready(&self) -> Result<Ready, String> {
+    pub(crate) fn ready(&self) -> Result<ReadyRun, String> {
         let make = self.make()?;
         let world = World::parse("world", &self.world).map_err(|error| error.to_string())?;
         let walls = Walls::of_any(&world).map_err(|what| format!("world: {what}"))?;
@@ -94,7 +94,7 @@ impl Setup {
             return Err(format!("time limit: expected more than 0 s and at most {LONGEST} s"));
         }
         let limit = Nanos((limit * 1e9) as u64);
-        Ok(Ready { world, make, begins, charge: battery as f64 / 100.0, goal, limit })
+        Ok(ReadyRun { world, make, begins, charge: battery as f64 / 100.0, goal, limit })
     }
 
     fn make(&self) -> Result<Make, String> {
@@ -122,7 +122,7 @@ impl Setup {
     }
 }
 
-impl Ready {
+impl ReadyRun {
     /// Returns the robot at its start.
     ///
     /// # Errors

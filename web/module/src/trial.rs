@@ -3,7 +3,7 @@
 use mdle_runtime::{Nanos, Turn};
 use serde_json::{Value, json};
 
-use crate::course::{Course, End};
+use crate::course::{Course, CourseEnd};
 use crate::plan::Plan;
 use crate::setup::Setup;
 
@@ -25,9 +25,9 @@ pub(crate) fn trial(setup: &Setup) -> Result<Value, String> {
     course.release();
     course.stop();
     let (end, fault) = match &course.end {
-        Some(End::Over) => ("over", None),
-        Some(End::Fault(sentence)) => ("fault", Some(sentence.clone())),
-        Some(End::Limit) | None => ("limit", None),
+        Some(CourseEnd::Over) => ("over", None),
+        Some(CourseEnd::Fault(sentence)) => ("fault", Some(sentence.clone())),
+        Some(CourseEnd::Limit) | None => ("limit", None),
     };
     let pose = course.robot.pose();
     let judged = course.judged(ready.goal.as_ref());

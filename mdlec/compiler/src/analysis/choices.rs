@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::tables::{Table, VARIABLES};
+use super::tables::{TruthTable, VARIABLES};
 use super::variables::Variable;
 use crate::fsm::Machine;
 use crate::plan::{After, Condition};
@@ -31,7 +31,7 @@ pub(super) struct Read<'l> {
 #[derive(Debug)]
 pub(super) struct Choices {
     free: usize,
-    columns: BTreeMap<Variable, Table>,
+    columns: BTreeMap<Variable, TruthTable>,
 }
 
 impl Choices {
@@ -45,8 +45,8 @@ impl Choices {
         let mut index = 0..free;
         let columns = all.iter().map(|variable| {
             let column = match value(variable) {
-                Some(value) => Table::constant(free, value),
-                None => Table::variable(free, index.next().unwrap_or(0)),
+                Some(value) => TruthTable::constant(free, value),
+                None => TruthTable::variable(free, index.next().unwrap_or(0)),
             };
             (*variable, column)
         });
@@ -54,17 +54,17 @@ impl Choices {
     }
 
     /// Returns the table with `value` in every choice.
-    pub(super) fn constant(&self, value: bool) -> Table {
-        Table::constant(self.free, value)
+    pub(super) fn constant(&self, value: bool) -> TruthTable {
+        TruthTable::constant(self.free, value)
     }
 
     /// Returns each variable, with the table of choices in which it is true.
-    pub(super) fn columns(&self) -> impl Iterator<Item = (&Variable, &Table)> {
+    pub(super) fn columns(&self) -> impl Iterator<Item = (&Variable, &TruthTable)> {
         self.columns.iter()
     }
 
     /// Returns the table of choices in which a condition has fired. A variable that was not enumerated counts as false.
-    pub(super) fn fired(&self, read: Read<'_>, machine: &Machine) -> Table {
+    pub(super) fn fired(&self, read: Read<'_>, machine: &Machine) -> TruthTable {
         let Read { condition, bracket, when } = read;
         let column = |variable| self.columns.get(&variable).cloned().unwrap_or_else(|| self.constant(false));
         let timer = |nanos: u64| match when {

@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::facts::PossibleFacts;
-use super::walk::{BracketFacts, Outcome, PlanFacts, Reach, walk};
+use super::walk::{BracketFacts, OperandOutcome, PlanFacts, Reach, walk};
 use crate::fsm::{Element, ElementKind, Machine};
 use crate::plan::RecordId;
 
@@ -59,6 +59,6 @@ fn can_end(element: Element<'_>, found: &BracketFacts, ends: &[bool]) -> bool {
 }
 
 /// Returns `true` if an element can end by an operand with this outcome.
-fn can_fire(found: &BracketFacts, outcome: Outcome) -> bool {
-    found.reach != Reach::Never && outcome == Outcome::Possible
+fn can_fire(found: &BracketFacts, outcome: OperandOutcome) -> bool {
+    found.reach != Reach::Never && outcome == OperandOutcome::Possible
 }

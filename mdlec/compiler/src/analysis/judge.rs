@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::choices::When;
 use super::known::Question;
 use super::variables::Variable;
-use super::walk::{BracketFacts, Outcome, Reach, Skip, Walk};
+use super::walk::{BracketFacts, OperandOutcome, Reach, Skip, Walk};
 use crate::plan::Condition;
 
 impl<'l> Walk<'l> {
@@ -33,7 +33,7 @@ impl<'l> Walk<'l> {
             let asked = operands.map(|operand| {
                 let fired = Question { any: vec![self.read(operand, number, when)], fired: true };
                 let asked = if just.any.is_empty() { vec![fired] } else { vec![fired, just.clone()] };
-                if self.world.is_possible(&asked, &fixed) { Outcome::Possible } else { Outcome::Never }
+                if self.world.is_possible(&asked, &fixed) { OperandOutcome::Possible } else { OperandOutcome::Never }
             });
             found.operands = asked.collect();
             return Some(clock);
@@ -43,7 +43,7 @@ impl<'l> Walk<'l> {
         for (operand, outcome) in condition.operands().iter().zip(&mut found.operands) {
             match self.earliest(operand, number) {
                 Some(nanos) => {
-                    *outcome = Outcome::Possible;
+                    *outcome = OperandOutcome::Possible;
                     let at = clock.saturating_add(nanos);
                     earliest = Some(earliest.map_or(at, |earliest| earliest.min(at)));
                 }
@@ -84,32 +84,32 @@ impl<'l> Walk<'l> {
     }
 
     /// Returns the reason why an operand cannot end its scope.
-    fn blame(&self, operand: &'l Condition, number: u32) -> Outcome {
+    fn blame(&self, operand: &'l Condition, number: u32) -> OperandOutcome {
         let read = self.read(operand, number, When::Later);
         if let Condition::Wait { quark, .. } = operand
             && let Some(outer) = self.waits.get(quark).and_then(|brackets| brackets.first())
         {
-            return Outcome::Repeated(*outer);
+            return OperandOutcome::Repeated(*outer);
         }
         if let Condition::Driven { from, until: None, .. } = operand
             && let Some((_, outer)) = self.world.distance(number).filter(|(shortest, _)| shortest == from)
         {
-            return Outcome::Repeated(outer);
+            return OperandOutcome::Repeated(outer);
         }
         if !self.alone.is_possible(&[Question { any: vec![read], fired: true }], &BTreeMap::new()) {
-            return Outcome::Never;
+            return OperandOutcome::Never;
         }
         let mut variables = BTreeSet::new();
         self.world.variables(read, &mut variables);
         let single = (variables.len() == 1).then(|| variables.first().copied()).flatten();
         if let Some(outer) = single.and_then(|variable| self.world.unit(variable)) {
-            return Outcome::Repeated(outer);
+            return OperandOutcome::Repeated(outer);
         }
         let late = self.world.deadline().map(|(_, bracket)| bracket);
         match (self.world.around(&variables), late) {
-            (None, Some(late)) => Outcome::Late(late),
-            (Some(outer), _) => Outcome::Beaten(outer),
-            (None, None) => Outcome::Never,
+            (None, Some(late)) => OperandOutcome::Late(late),
+            (Some(outer), _) => OperandOutcome::Beaten(outer),
+            (None, None) => OperandOutcome::Never,
         }
     }
 }

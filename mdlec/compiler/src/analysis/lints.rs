@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::constants::Constants;
-use super::walk::{BracketFacts, Outcome, Skip};
+use super::walk::{BracketFacts, OperandOutcome, Skip};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::{Atom, Element, Exit, Machine};
 use crate::plan::{Condition, Interrupt, Quark, condition_text};
@@ -54,22 +54,22 @@ impl<'l> Lints<'l> {
         element: Element<'_>,
         interrupt: &Interrupt,
         operand: &Condition,
-        outcome: Outcome,
+        outcome: OperandOutcome,
     ) -> Option<Diagnostic> {
         let text = condition_text(operand, &|id| self.machine.quark(id).text.clone());
         let span = interrupt.span;
         let (code, outer) = match outcome {
-            Outcome::Repeated(outer) => (Code::W0204, outer),
-            Outcome::Beaten(outer) => (Code::W0205, outer),
-            Outcome::Late(outer) => (Code::W0206, outer),
+            OperandOutcome::Repeated(outer) => (Code::W0204, outer),
+            OperandOutcome::Beaten(outer) => (Code::W0205, outer),
+            OperandOutcome::Late(outer) => (Code::W0206, outer),
             // W0203 reports operands that are never true.
-            Outcome::Possible | Outcome::Never | Outcome::Unread => return None,
+            OperandOutcome::Possible | OperandOutcome::Never | OperandOutcome::Unread => return None,
         };
         let (whose, outer) = self.whose(outer);
         let why = match outcome {
-            Outcome::Repeated(_) => format!("{whose} ends by it first"),
-            Outcome::Late(_) => format!("a timer of {whose} always fires first"),
-            Outcome::Beaten(_) | Outcome::Possible | Outcome::Never | Outcome::Unread => {
+            OperandOutcome::Repeated(_) => format!("{whose} ends by it first"),
+            OperandOutcome::Late(_) => format!("a timer of {whose} always fires first"),
+            OperandOutcome::Beaten(_) | OperandOutcome::Possible | OperandOutcome::Never | OperandOutcome::Unread => {
                 format!("{whose} always ends first")
             }
         };
@@ -89,7 +89,7 @@ impl<'l> Lints<'l> {
     fn unrecorded(&self, interrupt: &Interrupt, found: &BracketFacts) -> Option<Diagnostic> {
         let operands = interrupt.condition.operands();
         let asks = |operand: &Condition| operand.any(&|part| matches!(part, Condition::After(_)));
-        let never = operands.iter().zip(&found.operands).find(|(_, outcome)| **outcome == Outcome::Never);
+        let never = operands.iter().zip(&found.operands).find(|(_, outcome)| **outcome == OperandOutcome::Never);
         let (operand, _) = never.filter(|(operand, _)| asks(operand))?;
         let text = condition_text(operand, &|id| self.machine.quark(id).text.clone());
         let message = format!("`{text}` is never true: what it asks for never ends before this is read");

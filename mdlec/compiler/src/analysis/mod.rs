@@ -26,7 +26,7 @@ use mdle_runtime::TRANSITIONS_PER_TURN;
 use serde::Serialize;
 pub use sizes::Bytes;
 pub use walk::Reach;
-use walk::{BracketFacts, Outcome};
+use walk::{BracketFacts, OperandOutcome};
 
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Element, ElementKind, Machine};
@@ -249,9 +249,12 @@ fn by(condition: &Condition, found: &BracketFacts, machine: &Machine) -> (Vec<St
         let text = || condition_text(operand, &|id| machine.quark(id).text.clone());
         match outcome {
             _ if *operand == Condition::Null => {}
-            Outcome::Possible => can.push(text()),
-            Outcome::Never | Outcome::Beaten(_) | Outcome::Late(_) | Outcome::Repeated(_) => never.push(text()),
-            Outcome::Unread => {}
+            OperandOutcome::Possible => can.push(text()),
+            OperandOutcome::Never
+            | OperandOutcome::Beaten(_)
+            | OperandOutcome::Late(_)
+            | OperandOutcome::Repeated(_) => never.push(text()),
+            OperandOutcome::Unread => {}
         }
     }
     (can, never)

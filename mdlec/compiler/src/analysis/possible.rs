@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::choices::Choices;
-use super::tables::Table;
+use super::tables::TruthTable;
 use super::variables::Variable;
 use crate::plan::Quark;
 use crate::plan::families::{Family, Readings, at_once, family};
@@ -17,11 +17,11 @@ pub(super) fn possible(
     quarks: &[Quark],
     readings: Readings,
     entered: &impl Fn(u32) -> u64,
-) -> Table {
+) -> TruthTable {
     let mut possible = choices.constant(true);
-    let mut timers: Vec<(u32, u64, &Table)> = Vec::new();
-    let mut ways: Vec<(u32, u64, &Table)> = Vec::new();
-    let mut families: BTreeMap<Family<'_>, Vec<(&Quark, &Table)>> = BTreeMap::new();
+    let mut timers: Vec<(u32, u64, &TruthTable)> = Vec::new();
+    let mut ways: Vec<(u32, u64, &TruthTable)> = Vec::new();
+    let mut families: BTreeMap<Family<'_>, Vec<(&Quark, &TruthTable)>> = BTreeMap::new();
     for (variable, column) in choices.columns() {
         match variable {
             Variable::Timer(bracket, nanos) => {

@@ -5,7 +5,7 @@ pub(super) const VARIABLES: usize = 12;
 
 /// A truth table, indexed by the number of the choice: bit `i` of that number is the value of variable `i`.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Table(Vec<u64>);
+pub(super) struct TruthTable(Vec<u64>);
 
 /// Truth tables of the first six variables, in one word each.
 const SHORT: [u64; 6] = [
@@ -17,7 +17,7 @@ const SHORT: [u64; 6] = [
     0xFFFF_FFFF_0000_0000,
 ];
 
-impl Table {
+impl TruthTable {
     /// Returns a table for `variables` variables with `value` in every choice.
     pub(super) fn constant(variables: usize, value: bool) -> Self {
         let words = 1_usize << variables.saturating_sub(SHORT.len());
@@ -68,12 +68,12 @@ impl Table {
 
 #[cfg(test)]
 mod tests {
-    use super::Table;
+    use super::TruthTable;
 
     #[test]
     fn tables_are_what_the_operators_say_of_every_choice() {
         for variables in 1..=9_usize {
-            let of = |index| Table::variable(variables, index);
+            let of = |index| TruthTable::variable(variables, index);
             let [one, other] = [0, variables - 1];
             let (both, any, not) = (of(one).and(&of(other)), of(one).or(&of(other)), of(one).not());
             for choice in 0..1 << variables {
@@ -82,7 +82,7 @@ mod tests {
                 assert_eq!([both.holds(choice), any.holds(choice)], [first & last, first | last]);
                 assert_eq!(not.holds(choice), !first);
             }
-            assert!(!of(one).and(&of(one).not()).is_possible() && Table::constant(variables, true).is_possible());
+            assert!(!of(one).and(&of(one).not()).is_possible() && TruthTable::constant(variables, true).is_possible());
         }
     }
 }

@@ -32,7 +32,7 @@ pub enum Reach {
 pub(super) struct BracketFacts {
     pub(super) reach: Reach,
     /// Outcome of each operand of the outermost OR of the bracket's interrupt.
-    pub(super) operands: Vec<Outcome>,
+    pub(super) operands: Vec<OperandOutcome>,
     /// `true` if the bracket can end because its law completes.
     pub(super) completes: bool,
     /// `true` if the bracket can end because its last element ends.
@@ -58,7 +58,7 @@ pub(super) enum Skip {
 
 /// Result of the analysis of one operand of an interrupt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Outcome {
+pub(super) enum OperandOutcome {
     /// The interrupt can fire by the operand.
     Possible,
     /// The operand is never true.
@@ -157,7 +157,7 @@ impl<'l> Walk<'l> {
         self.world.entered[element.index()] = self.clock.unwrap_or(0);
         let mut found = BracketFacts {
             reach,
-            operands: vec![Outcome::Unread; condition.operands().len()],
+            operands: vec![OperandOutcome::Unread; condition.operands().len()],
             completes: false,
             body_ends: false,
             skipped: (reach == Reach::Skipped).then_some(Skip::Inside),

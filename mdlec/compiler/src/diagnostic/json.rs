@@ -15,14 +15,14 @@ pub struct Message<'a> {
     /// Text of the message.
     pub message: &'a str,
     /// Places in the text: first the place of the mistake, then places that explain it.
-    pub spans: Vec<Place<'a>>,
+    pub spans: Vec<FileRange<'a>>,
     /// Advice for the user.
     pub help: Vec<&'a str>,
 }
 
 /// A place in a file. Lines and columns count from 1, columns in characters; the end is after the last character.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Place<'a> {
+pub struct FileRange<'a> {
     /// Name of the file.
     pub file: &'a str,
     /// Line of the start.
@@ -72,11 +72,11 @@ impl Sources {
         }
     }
 
-    fn place<'a>(&'a self, Label { span, text, primary }: &'a Label) -> Place<'a> {
+    fn place<'a>(&'a self, Label { span, text, primary }: &'a Label) -> FileRange<'a> {
         let (source, range) = self.range(*span);
         let at = |byte| self.line_and_column(source, byte);
         let ((line, column), (end_line, end_column)) = (at(range.start), at(range.end));
-        Place { file: self.name(source), line, column, end_line, end_column, primary: *primary, text }
+        FileRange { file: self.name(source), line, column, end_line, end_column, primary: *primary, text }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{STATES, lower};
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::plan::{Loop, Node, Nondegenerate, Part, Scope};
+use crate::plan::{Loop, Node, Nondegenerate, PlanPart, Scope};
 
 /// Maximum number of states of an expanded plan.
 const EXPANDED: u64 = 100_000;
@@ -39,8 +39,8 @@ pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
         },
     };
     for (count, limit) in [(parts, PARTS), (text, TEXT)] {
-        let source_size = Expanded::of(Part::Scope(&plan.plan().root), &count, false).all;
-        let expanded = Expanded::of(Part::Scope(&plan.plan().root), &count, true);
+        let source_size = Expanded::of(PlanPart::Scope(&plan.plan().root), &count, false).all;
+        let expanded = Expanded::of(PlanPart::Scope(&plan.plan().root), &count, true);
         if expanded.all > limit.max(source_size) {
             return Err(too_large(&expanded, &count, limit, plan));
         }
@@ -54,7 +54,7 @@ pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
 /// Fails with E0501 for a plan that cannot be lowered, E0502 for a plan with more than 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
     let count = Count { unit: "states", of: |part| u64::from(part.atom().is_some()) };
-    let expanded = Expanded::of(Part::Scope(&plan.plan().root), &count, true);
+    let expanded = Expanded::of(PlanPart::Scope(&plan.plan().root), &count, true);
     let states = expanded.all.saturating_add(1);
     if states <= EXPANDED {
         return Ok(states);
@@ -108,7 +108,7 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
 struct Count {
     /// Name of the quantity, in the plural.
     unit: &'static str,
-    of: fn(Part<'_>) -> u64,
+    of: fn(PlanPart<'_>) -> u64,
 }
 
 /// Total of a quantity in a plan, and the loop that contributes most to it.
@@ -121,14 +121,14 @@ struct Expanded {
 impl Expanded {
     /// Counts the quantity in all passes of finite loops if `passes` is `true`, and otherwise in one pass of
     /// each loop.
-    fn of(part: Part<'_>, count: &Count, passes: bool) -> Self {
+    fn of(part: PlanPart<'_>, count: &Count, passes: bool) -> Self {
         let inside = part.body().iter().map(|node| Self::of(node.part(), count, passes));
         let size = |repeated: &Option<(u64, Span)>| repeated.map_or(0, |(size, _)| size);
         let inside = inside.fold(Self { all: (count.of)(part), largest: None }, |sum, Self { all, largest }| {
             let largest = if size(&largest) > size(&sum.largest) { largest } else { sum.largest };
             Self { all: sum.all.saturating_add(all), largest }
         });
-        let Part::Loop(Loop { times: Some(times), span, .. }) = part else { return inside };
+        let PlanPart::Loop(Loop { times: Some(times), span, .. }) = part else { return inside };
         let all = inside.all.saturating_mul(if passes { *times } else { 1 });
         Self { all, largest: if *times > 1 { Some((all, *span)) } else { inside.largest } }
     }

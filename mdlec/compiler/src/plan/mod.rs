@@ -38,7 +38,7 @@ pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::{resolve, roots};
 pub use resolve_conditions::condition_text;
 pub use size::Bounds;
-pub use walk::{Part, Visit, Walk};
+pub use walk::{PlanPart, Visit, Walk};
 pub(crate) use words::Words;
 
 use std::num::NonZeroU32;

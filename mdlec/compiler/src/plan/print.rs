@@ -4,7 +4,7 @@
 use std::fmt;
 
 use super::angle::{HERE, frame_text};
-use super::{Atom, Interrupt, Part, Plan, Scope, Visit};
+use super::{Atom, Interrupt, Plan, PlanPart, Scope, Visit};
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -24,14 +24,14 @@ impl Plan {
         let mut printer = Printer { plan: self, text: String::new(), depth: 0, numbered, atoms: 0 };
         for visit in self.walk() {
             match visit {
-                Visit::Enter(Part::Atom(atom)) => printer.atom(atom),
-                Visit::Enter(Part::Scope(scope)) => printer.open(&scope_head(scope)),
-                Visit::Enter(Part::Loop(repeated)) => {
+                Visit::Enter(PlanPart::Atom(atom)) => printer.atom(atom),
+                Visit::Enter(PlanPart::Scope(scope)) => printer.open(&scope_head(scope)),
+                Visit::Enter(PlanPart::Loop(repeated)) => {
                     let times = repeated.times.map_or_else(|| "inf".to_owned(), |times| times.to_string());
                     printer.open(&format!("ExecPlan {times} {{"));
                 }
-                Visit::Leave(Part::Atom(_)) => {}
-                Visit::Leave(Part::Scope(_) | Part::Loop(_)) => {
+                Visit::Leave(PlanPart::Atom(_)) => {}
+                Visit::Leave(PlanPart::Scope(_) | PlanPart::Loop(_)) => {
                     printer.depth -= 1;
                     printer.line("}");
                 }

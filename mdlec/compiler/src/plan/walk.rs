@@ -7,7 +7,7 @@ use crate::diagnostic::Span;
 
 /// A scope, a loop or an atom of a plan.
 #[derive(Debug, Clone, Copy)]
-pub enum Part<'p> {
+pub enum PlanPart<'p> {
     /// A behavior, or the plan.
     Scope(&'p Scope),
     /// A string that is run several times.
@@ -20,9 +20,9 @@ pub enum Part<'p> {
 #[derive(Debug, Clone, Copy)]
 pub enum Visit<'p> {
     /// The part is entered.
-    Enter(Part<'p>),
+    Enter(PlanPart<'p>),
     /// The walk leaves the part, after all parts inside it.
-    Leave(Part<'p>),
+    Leave(PlanPart<'p>),
 }
 
 /// A walk over a plan, which visits each part twice: at its entry and at its end.
@@ -30,7 +30,7 @@ pub enum Visit<'p> {
 pub struct Walk<'p> {
     root: Option<&'p Scope>,
     /// Parts that were entered and not left, each with its remaining nodes.
-    open: Vec<(Part<'p>, slice::Iter<'p, Node>)>,
+    open: Vec<(PlanPart<'p>, slice::Iter<'p, Node>)>,
 }
 
 impl Plan {
@@ -41,7 +41,7 @@ impl Plan {
     }
 
     /// Returns all parts in pre-order: a part comes before its nested parts.
-    pub fn parts(&self) -> impl Iterator<Item = Part<'_>> {
+    pub fn parts(&self) -> impl Iterator<Item = PlanPart<'_>> {
         let mut walk = self.walk();
         iter::from_fn(move || walk.by_ref().find_map(Visit::entered))
     }
@@ -59,7 +59,7 @@ impl<'p> Walk<'p> {
         self.open.iter().rev().filter_map(|(part, _)| part.scope())
     }
 
-    fn enter(&mut self, part: Part<'p>) -> Visit<'p> {
+    fn enter(&mut self, part: PlanPart<'p>) -> Visit<'p> {
         self.open.push((part, part.body().iter()));
         Visit::Enter(part)
     }
@@ -70,7 +70,7 @@ impl<'p> Iterator for Walk<'p> {
 
     fn next(&mut self) -> Option<Visit<'p>> {
         if let Some(root) = self.root.take() {
-            return Some(self.enter(Part::Scope(root)));
+            return Some(self.enter(PlanPart::Scope(root)));
         }
         match self.open.last_mut()?.1.next() {
             Some(node) => Some(self.enter(node.part())),
@@ -82,7 +82,7 @@ impl<'p> Iterator for Walk<'p> {
 impl<'p> Visit<'p> {
     /// Returns the part, if this step enters the part.
     #[must_use]
-    pub fn entered(self) -> Option<Part<'p>> {
+    pub fn entered(self) -> Option<PlanPart<'p>> {
         match self {
             Self::Enter(part) => Some(part),
             Self::Leave(_) => None,
@@ -90,7 +90,7 @@ impl<'p> Visit<'p> {
     }
 }
 
-impl<'p> Part<'p> {
+impl<'p> PlanPart<'p> {
     /// Returns the interrupt of a scope or an atom; `None` for a loop.
     #[must_use]
     pub fn interrupt(self) -> Option<&'p Interrupt> {
@@ -143,11 +143,11 @@ impl<'p> Part<'p> {
 impl Node {
     /// Returns the node as a part of the plan.
     #[must_use]
-    pub fn part(&self) -> Part<'_> {
+    pub fn part(&self) -> PlanPart<'_> {
         match self {
-            Self::Atom(atom) => Part::Atom(atom),
-            Self::Scope(scope) => Part::Scope(scope),
-            Self::Loop(repeated) => Part::Loop(repeated),
+            Self::Atom(atom) => PlanPart::Atom(atom),
+            Self::Scope(scope) => PlanPart::Scope(scope),
+            Self::Loop(repeated) => PlanPart::Loop(repeated),
         }
     }
 }
@@ -168,9 +168,9 @@ mod tests {
             let (depth, around) = (walk.depth(), around.join(" in "));
             let word = match walk.next() {
                 Some(Visit::Enter(part)) => match part {
-                    Part::Scope(scope) => scope.name.clone(),
-                    Part::Loop(_) => "loop".to_owned(),
-                    Part::Atom(_) => "atom".to_owned(),
+                    PlanPart::Scope(scope) => scope.name.clone(),
+                    PlanPart::Loop(_) => "loop".to_owned(),
+                    PlanPart::Atom(_) => "atom".to_owned(),
                 },
                 Some(Visit::Leave(_)) => continue,
                 None => break,
@@ -179,7 +179,7 @@ mod tests {
         }
         let expected = ["0 P in ", "1 Q in P", "2 loop in Q in P", "3 atom in Q in P", "1 R in P", "2 atom in R in P"];
         assert_eq!(seen, expected);
-        assert_eq!(plan.parts().filter_map(Part::atom).count(), 2);
+        assert_eq!(plan.parts().filter_map(PlanPart::atom).count(), 2);
         assert_eq!(plan.walk().count(), 2 * plan.parts().count());
     }
 }

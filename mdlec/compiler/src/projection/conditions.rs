@@ -3,7 +3,7 @@
 //! detects by `past` that another robot has left its plan.
 
 use super::build::{Build, begin};
-use super::owners::{ANY, LINK, MEETING, Owned, Owner, Place};
+use super::owners::{ANY, ConditionContext, LINK, MEETING, Owned, Owner};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{After, Arg, Call, Compared, Condition, ConditionNode, Operand, Plan};
 
@@ -20,7 +20,7 @@ pub(super) fn guards<'s>(plan: &Plan<'s>, build: &mut Build<'_, 's>) -> Vec<Opti
     let mut guards = vec![Vec::new(); build.robots.len()];
     for operand in operands {
         for robot in build.guarded(operand) {
-            let condition = build.read(operand, Place::Head, robot);
+            let condition = build.read(operand, ConditionContext::Head, robot);
             guards.get_mut(robot).into_iter().for_each(|guard| guard.push(condition));
         }
     }
@@ -36,12 +36,12 @@ pub(super) fn guards<'s>(plan: &Plan<'s>, build: &mut Build<'_, 's>) -> Vec<Opti
 
 /// Projects the condition of an atom, which the first robot reads.
 pub(super) fn of_atom<'s>(condition: &Condition<'s>, build: &mut Build<'_, 's>) -> Condition<'s> {
-    build.read(condition, Place::Atom, 0)
+    build.read(condition, ConditionContext::Atom, 0)
 }
 
 /// Projects the condition of a behavior in place, which the first robot reads.
 pub(super) fn of_behavior<'s>(condition: &Condition<'s>, build: &mut Build<'_, 's>) -> Condition<'s> {
-    build.read(condition, Place::Behavior, 0)
+    build.read(condition, ConditionContext::Behavior, 0)
 }
 
 /// Returns `true` if the operand is a timer that ends the group: a `wait` with a finite time.
@@ -122,13 +122,13 @@ impl<'s> Build<'_, 's> {
     /// the error is reported when the condition of that robot is projected.
     fn silently(&mut self, call: &Call<'s>) -> Option<Owner> {
         let first = self.found.len();
-        let owned = self.owned(call, Place::Head);
+        let owned = self.owned(call, ConditionContext::Head);
         self.found.truncate(first);
         Some(owned.map_or(Owner::One(0), |owned| owned.owner))
     }
 
     /// Projects a condition for this robot.
-    fn read(&mut self, condition: &Condition<'s>, place: Place, robot: usize) -> Condition<'s> {
+    fn read(&mut self, condition: &Condition<'s>, place: ConditionContext, robot: usize) -> Condition<'s> {
         let span = condition.span;
         let node = match condition.node {
             ConditionNode::Or(operands) => self.all_of(operands, place, robot, ConditionNode::Or),
@@ -151,7 +151,7 @@ impl<'s> Build<'_, 's> {
     }
 
     /// Projects the cause in `after LABEL CAUSE` in the same way as in the condition of the atom with this label.
-    fn cause(&mut self, label: &str, cause: &Condition<'s>, place: Place, robot: usize) -> Condition<'s> {
+    fn cause(&mut self, label: &str, cause: &Condition<'s>, place: ConditionContext, robot: usize) -> Condition<'s> {
         let labelled = self.labels.get(label).copied().unwrap_or(self.done);
         let done = std::mem::replace(&mut self.done, labelled);
         let cause = self.read(cause, place, robot);
@@ -162,7 +162,7 @@ impl<'s> Build<'_, 's> {
     fn all_of(
         &mut self,
         operands: &[Condition<'s>],
-        place: Place,
+        place: ConditionContext,
         robot: usize,
         join: fn(&'s &'s [Condition<'s>]) -> ConditionNode<'s>,
     ) -> ConditionNode<'s> {
@@ -170,13 +170,13 @@ impl<'s> Build<'_, 's> {
         join(self.arena.alloc(&*self.arena.alloc_slice_copy(&operands)))
     }
 
-    fn inner(&mut self, operand: &Condition<'s>, place: Place, robot: usize) -> &'s Condition<'s> {
+    fn inner(&mut self, operand: &Condition<'s>, place: ConditionContext, robot: usize) -> &'s Condition<'s> {
         let inner = self.read(operand, place, robot);
         self.arena.alloc(inner)
     }
 
     /// Projects an interrupt for this robot.
-    fn quark(&mut self, call: &Call<'s>, place: Place, robot: usize, span: Span) -> Condition<'s> {
+    fn quark(&mut self, call: &Call<'s>, place: ConditionContext, robot: usize, span: Span) -> Condition<'s> {
         let broken = Condition { node: ConditionNode::Broken, span };
         let Some(Owned { owner, call: own }) = self.owned(call, place) else { return broken };
         if own.name == MEETING && own.args.is_empty() {
@@ -189,9 +189,9 @@ impl<'s> Build<'_, 's> {
     }
 
     /// Projects `all rendezvous` and `robot2.rendezvous`: the condition that the other robots have reached this atom.
-    fn meeting(&mut self, owner: Owner, place: Place, span: Span) -> Option<Condition<'s>> {
+    fn meeting(&mut self, owner: Owner, place: ConditionContext, span: Span) -> Option<Condition<'s>> {
         let met = match owner {
-            _ if place != Place::Atom => Err("robots meet in an atom"),
+            _ if place != ConditionContext::Atom => Err("robots meet in an atom"),
             Owner::All => Ok(1..self.robots.len()),
             Owner::One(robot) if robot > 0 => Ok(robot..robot + 1),
             Owner::One(_) => Err("the first robot of a group waits for the others, and not for itself"),
@@ -219,7 +219,7 @@ impl<'s> Build<'_, 's> {
     }
 
     /// Projects a comparison for this robot.
-    fn comparison(&mut self, compared: &Compared<'s>, place: Place, robot: usize) -> ConditionNode<'s> {
+    fn comparison(&mut self, compared: &Compared<'s>, place: ConditionContext, robot: usize) -> ConditionNode<'s> {
         let Some(Owned { owner, call: left }) = self.owned(compared.left, place) else { return ConditionNode::Broken };
         if !self.may_read(compared.left, owner, place, robot) || self.names_itself(&left, robot) {
             return ConditionNode::Broken;
@@ -241,11 +241,11 @@ impl<'s> Build<'_, 's> {
     }
 
     /// Returns `true` if a robot can read a quark of this owner; reports an error otherwise.
-    fn may_read(&mut self, call: &Call<'s>, owner: Owner, place: Place, robot: usize) -> bool {
+    fn may_read(&mut self, call: &Call<'s>, owner: Owner, place: ConditionContext, robot: usize) -> bool {
         let others = match owner {
             Owner::Timer => return true,
             Owner::One(one) if one == robot => return true,
-            Owner::Any if place == Place::Head => return true,
+            Owner::Any if place == ConditionContext::Head => return true,
             Owner::One(one) => format!("`{}`", self.robots.get(one).map_or("", |robot| robot.node)),
             Owner::Any | Owner::All => "other robots".to_owned(),
         };
@@ -253,8 +253,8 @@ impl<'s> Build<'_, 's> {
         let message = format!("`{first}` reads this condition, and the state link does not carry it from {others}");
         let report = Diagnostic::new(Code::E0209, message, call.span, "a quark of another robot").help(LINK);
         let report = match place {
-            Place::Head => report,
-            Place::Atom | Place::Behavior => {
+            ConditionContext::Head => report,
+            ConditionContext::Atom | ConditionContext::Behavior => {
                 report.help("in the condition after the group's name, each robot reads its own")
             }
         };

@@ -24,7 +24,7 @@ pub use print::projected;
 
 /// The plan of one robot of a group.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Part {
+pub struct RobotPlan {
     /// Name of the group's plan.
     pub group: String,
     /// Name of the robot.
@@ -36,7 +36,7 @@ pub struct Part {
     pub meetings: BTreeMap<String, BTreeSet<String>>,
 }
 
-impl Part {
+impl RobotPlan {
     /// Translates a text of the group's plan to texts of the robot's own plan: `a.x > 7m` becomes `x > 7m`, and a
     /// meeting becomes all interrupts that the robot reads in its place.
     #[must_use]
@@ -52,9 +52,9 @@ impl Part {
     }
 }
 
-/// Replaces the plan of each group by the plans of its robots. Returns a [`Part`] for each of the new plans, and the
+/// Replaces the plan of each group by the plans of its robots. Returns a [`RobotPlan`] for each of the new plans, and the
 /// errors in groups.
-pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet) -> (Vec<Part>, Vec<Diagnostic>) {
+pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet) -> (Vec<RobotPlan>, Vec<Diagnostic>) {
     let mut found = robots::misplaced(files);
     if files.plans.iter().all(|plan| plan.group.is_none()) {
         return (Vec::new(), found);
@@ -73,7 +73,7 @@ pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet)
             Some(written) => match robots::named(plan, written, &mut found) {
                 Some(robots) => {
                     let (projected, mut meetings) = elements::plans(plan, &robots, arena, alphabet, &mut found);
-                    parts.extend(projected.iter().zip(&robots).map(|(own, robot)| Part {
+                    parts.extend(projected.iter().zip(&robots).map(|(own, robot)| RobotPlan {
                         group: plan.name.node.to_owned(),
                         robot: robot.node.to_owned(),
                         plan: own.name.node.to_owned(),

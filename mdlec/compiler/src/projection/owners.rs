@@ -15,7 +15,7 @@ pub(super) const LINK: &str =
 
 /// Place of a condition, which determines the quarks that the condition may contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
+pub(super) enum ConditionContext {
     /// An operand of the group's own condition.
     Head,
     /// The condition of an atom.
@@ -45,7 +45,7 @@ pub(super) struct Owned<'s> {
 
 impl<'s> Build<'_, 's> {
     /// Separates a quark from the name of its robot; returns `None` for an invalid quark, which is then reported.
-    pub(super) fn owned(&mut self, call: &Call<'s>, place: Place) -> Option<Owned<'s>> {
+    pub(super) fn owned(&mut self, call: &Call<'s>, place: ConditionContext) -> Option<Owned<'s>> {
         match call.name {
             "wait" => Some(Owned { owner: Owner::Timer, call: *call }),
             ANY => self.of_several(call, Owner::Any),
@@ -95,7 +95,7 @@ impl<'s> Build<'_, 's> {
     }
 
     /// Reports a quark that does not name its robot.
-    fn whose(&self, call: &Call<'s>, place: Place) -> Diagnostic {
+    fn whose(&self, call: &Call<'s>, place: ConditionContext) -> Diagnostic {
         let (name, here) = (call.name, call.name_span());
         let report = Diagnostic::new(Code::E0209, format!("`{name}` of which robot?"), here, "no robot is named");
         if name == MEETING {
@@ -104,8 +104,8 @@ impl<'s> Build<'_, 's> {
         let first = self.robots.first().map_or("", |first| first.node);
         let report = report.fix("of the first robot: {}", here, format!("{first}.{name}"));
         match place {
-            Place::Head => report.fix("of any robot: {}", here, format!("any {name}")),
-            Place::Atom | Place::Behavior => report,
+            ConditionContext::Head => report.fix("of any robot: {}", here, format!("any {name}")),
+            ConditionContext::Atom | ConditionContext::Behavior => report,
         }
     }
 

@@ -2,7 +2,7 @@
 //! are converted to units of MDLe.
 
 use super::number::split;
-use super::source::{Place, Source};
+use super::source::{FileText, TextRange};
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic};
 
@@ -77,7 +77,7 @@ fn rounded(value: f64) -> Option<String> {
 }
 
 /// Returns the message about an arithmetic operator, if `found` is such an operator.
-pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Option<Diagnostic> {
+pub(super) fn arithmetic(source: FileText<'_>, found: &str, place: TextRange) -> Option<Diagnostic> {
     let operator = if matches!(found, "+" | "-" | "*" | "/" | "**") { found } else { return None };
     let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
     let after = source.text.get(place.end..)?.trim_start_matches([' ', '\t']);
@@ -108,7 +108,7 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
     if !is_number(left) || !is_number(right) {
         // In `go 5 - 3` the operator is a sign; the meaning of `Dock / 2` is unknown.
         if let Some(name) = hyphenated(source, left, operator, right, place) {
-            let whole = source.span(Place::new(left_start, right_end));
+            let whole = source.span(TextRange::new(left_start, right_end));
             let message = format!("`{left}-{right}` is not a name");
             let diagnostic = Diagnostic::new(Code::E0101, message, source.span(place), "not part of a name");
             return Some(diagnostic.fix("a name has letters, digits and `_`: {}", whole, name));
@@ -122,7 +122,7 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
         return is_sum.then(|| report(message).help(help));
     }
     let diagnostic = report(format!("`{left} {operator} {right}` is not computed"));
-    let whole = source.span(Place::new(left_start, right_end));
+    let whole = source.span(TextRange::new(left_start, right_end));
     Some(match computed(left, operator, right) {
         Some(result) if matches!(operator, "+" | "-") => diagnostic.fix("write the result: {}", whole, result).fix(
             "or, for two numbers, let the sign touch its number: {}",
@@ -135,7 +135,7 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
 }
 
 /// Reports a sign before a name, such as `-far`.
-fn negative_name(source: Source<'_>, operator: &str, place: Place) -> Option<Diagnostic> {
+fn negative_name(source: FileText<'_>, operator: &str, place: TextRange) -> Option<Diagnostic> {
     let (before, after) = (source.text.get(..place.start)?, source.text.get(place.end..)?);
     let name = after.get(..after.find(|c: char| !is_in_word(c)).unwrap_or(after.len()))?;
     let follows = after.get(name.len()..)?.trim_start();
@@ -143,7 +143,7 @@ fn negative_name(source: Source<'_>, operator: &str, place: Place) -> Option<Dia
     // In a comparison, the operator is a difference of signals.
     (is_sign && !follows.starts_with(['<', '>', '=', '≤', '≥'])).then(|| {
         if is_pi(name) {
-            let whole = source.span(Place::new(place.start, place.end + name.len()));
+            let whole = source.span(TextRange::new(place.start, place.end + name.len()));
             let found = Diagnostic::new(Code::E0101, "there are no constants", whole, "not part of MDLe");
             return found.fix("for an angle write {}", whole, "-180deg");
         }
@@ -154,14 +154,14 @@ fn negative_name(source: Source<'_>, operator: &str, place: Place) -> Option<Dia
 }
 
 /// Reports parts and multiples of pi, such as `pi/2`, `2*pi` and `pi*0.5`, as the angles that they mean.
-fn part_of_pi(source: Source<'_>, place: Place) -> Option<Diagnostic> {
+fn part_of_pi(source: FileText<'_>, place: TextRange) -> Option<Diagnostic> {
     if source.slice(place) == "-" {
         // The sign and the operator after `pi` have the same message, which is reported once.
         let after = source.text.get(place.end..)?;
         let rest = PI.iter().find_map(|name| after.strip_prefix(name))?.trim_start();
         let operator = source.text.len() - rest.len();
         let is_operator = rest.starts_with(['*', '/']);
-        return is_operator.then(|| part_of_pi(source, Place::new(operator, operator + 1))).flatten();
+        return is_operator.then(|| part_of_pi(source, TextRange::new(operator, operator + 1))).flatten();
     }
     let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
     let after = source.text.get(place.end..)?.trim_start_matches([' ', '\t']);
@@ -175,7 +175,7 @@ fn part_of_pi(source: Source<'_>, place: Place) -> Option<Diagnostic> {
     };
     let start = before.len() - left.len();
     let sign = if before.get(..start)?.ends_with('-') { "-" } else { "" };
-    let whole = source.span(Place::new(start - sign.len(), source.text.len() - after.len() + right.len()));
+    let whole = source.span(TextRange::new(start - sign.len(), source.text.len() - after.len() + right.len()));
     let angle = |factor: f64, unit: &str| Some(format!("{sign}{}{unit}", rounded(part * factor)?));
     let message = "nothing is computed in a plan, and there are no constants";
     let found = Diagnostic::new(Code::E0101, message, source.span(place), "MDLe has no arithmetic");
@@ -188,7 +188,7 @@ fn is_pi(text: &str) -> bool {
 }
 
 /// Returns a name without hyphens for a plan's name with hyphens, such as `Return-Home`.
-fn hyphenated(source: Source<'_>, left: &str, operator: &str, right: &str, place: Place) -> Option<String> {
+fn hyphenated(source: FileText<'_>, left: &str, operator: &str, right: &str, place: TextRange) -> Option<String> {
     let before = source.text.get(..place.start)?;
     let touches = before.ends_with(left) && source.text.get(place.end..)?.starts_with(right);
     let is_header = before.get(..before.len() - left.len())?.trim_end().ends_with('{');
@@ -197,7 +197,7 @@ fn hyphenated(source: Source<'_>, left: &str, operator: &str, right: &str, place
 }
 
 /// Reports a multiplied string, such as `(…)*3`, which is not a loop in MDLe.
-fn power(source: Source<'_>, place: Place, after: &str) -> Diagnostic {
+fn power(source: FileText<'_>, place: TextRange, after: &str) -> Diagnostic {
     let message = format!("`{}` does not repeat", source.slice(place));
     let diagnostic = Diagnostic::new(Code::E0101, message, source.span(place), "not part of MDLe");
     let (count, _) = split(after);
@@ -205,7 +205,7 @@ fn power(source: Source<'_>, place: Place, after: &str) -> Diagnostic {
         return diagnostic.help("a count follows `^`: `((Atom (wait 5) stop))^3`");
     }
     let end = source.text.len() - after.len() + count.len();
-    let span = source.span(Place::new(place.start, end));
+    let span = source.span(TextRange::new(place.start, end));
     diagnostic.fix("to repeat what is before it, write {}", span, format!("^{count}"))
 }
 

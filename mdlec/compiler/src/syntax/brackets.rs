@@ -6,10 +6,10 @@ mod unclosed;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::indentation::{self, End};
+use super::indentation::{self, BraceEnd};
 use super::lexer::Lexed;
 use super::regions::Regions;
-use super::source::{Place, Source};
+use super::source::{FileText, TextRange};
 use super::token::{Tok, Token};
 use super::tree::Name;
 use crate::diagnostic::{Code, Diagnostic};
@@ -38,12 +38,12 @@ pub(super) struct Balanced<'s> {
 
 /// Balances the brackets of a text. Braces that are never closed are closed where the indentation shows their end or,
 /// if this leaves fewer errors, where their plan seems to end. A repair that adds errors is dropped.
-pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s> {
+pub(super) fn balance<'s>(source: FileText<'s>, lexed: &Lexed<'s>) -> Balanced<'s> {
     let (plain, ends) = pass(source, lexed, &BTreeMap::new());
     if !plain.is_open {
         return plain;
     }
-    let by_plan = ends.into_iter().map(|end| (end, End::OfPlan)).collect();
+    let by_plan = ends.into_iter().map(|end| (end, BraceEnd::OfPlan)).collect();
     let ways = [indentation::ends(source, &lexed.tokens), by_plan];
     ways.into_iter().filter(|ends| !ends.is_empty()).map(|ends| pass(source, lexed, &ends).0).fold(
         plain,
@@ -58,7 +58,11 @@ pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s>
 
 /// Reads the tokens once, and closes open brackets before the tokens in `ends`. Also returns the tokens before which
 /// braces that are never closed seem to end.
-fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeMap<usize, End>) -> (Balanced<'s>, BTreeSet<usize>) {
+fn pass<'s>(
+    source: FileText<'s>,
+    lexed: &Lexed<'s>,
+    ends: &BTreeMap<usize, BraceEnd>,
+) -> (Balanced<'s>, BTreeSet<usize>) {
     let mut errors = lexed.errors.iter().peekable();
     let mut docs = lexed.docs.iter().peekable();
     let mut pass = Pass {
@@ -76,8 +80,8 @@ fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeMap<usize, End>) 
             pass.lexical(error.clone());
         }
         match ends.get(&index) {
-            Some(End::OfPlan) => pass.close_down_to(0, token.place),
-            Some(End::OfBrace(brace)) => pass.close_brace_of(*brace, token.place),
+            Some(BraceEnd::OfPlan) => pass.close_down_to(0, token.place),
+            Some(BraceEnd::OfBrace(brace)) => pass.close_brace_of(*brace, token.place),
             None => {}
         }
         if !pass.token(index, *token) {
@@ -108,7 +112,7 @@ enum BracketKind {
 struct Open {
     kind: BracketKind,
     /// Place of the bracket; `None` if it was inserted.
-    place: Option<Place>,
+    place: Option<TextRange>,
     /// Index of the bracket in the text's tokens, or of the token before which it was inserted.
     raw: usize,
     /// Index of the message about a `)` in the place of the bracket's `}`; `None` if there is no such message.
@@ -126,7 +130,7 @@ struct Strays {
 }
 
 struct Pass<'t, 's> {
-    source: Source<'s>,
+    source: FileText<'s>,
     raw: &'t [Token<'s>],
     balanced: Balanced<'s>,
     open: Vec<Open>,
@@ -185,7 +189,7 @@ impl<'s> Pass<'_, 's> {
 
     /// Starts a new line in the regions if the text up to the byte offset `start` contains a line end.
     fn reach(&mut self, start: usize) {
-        if self.source.slice(Place::new(self.reached, start)).contains('\n') {
+        if self.source.slice(TextRange::new(self.reached, start)).contains('\n') {
             self.balanced.regions.begin_line();
         }
         self.reached = self.reached.max(start);
@@ -268,11 +272,11 @@ impl<'s> Pass<'_, 's> {
         let kind = if self.open.last()?.kind == BracketKind::Brace { Tok::RBrace } else { Tok::RParen };
         self.balanced.regions.spoil();
         let end = self.balanced.tokens.last().map_or(0, |token| token.place.end);
-        self.close(Token { kind, place: Place::new(end, end) })
+        self.close(Token { kind, place: TextRange::new(end, end) })
     }
 
     /// Closes all open brackets after the first `depth`, which must be parentheses, and reports them with one message.
-    fn force_down_to(&mut self, depth: usize, missing_at: Place, before: &str) {
+    fn force_down_to(&mut self, depth: usize, missing_at: TextRange, before: &str) {
         let mut unclosed = Vec::new();
         let mut atom = false;
         while let Some(open) = (self.open.len() > depth).then(|| self.force()).flatten() {
@@ -299,7 +303,7 @@ impl<'s> Pass<'_, 's> {
     }
 
     /// Closes the atom in which another atom begins.
-    fn close_atom(&mut self, at: Place) {
+    fn close_atom(&mut self, at: TextRange) {
         let inside = self.open.iter().rev().take_while(|open| open.kind != BracketKind::Brace);
         if let Some(up) = inside.enumerate().filter(|(_, open)| open.kind == BracketKind::Atom).map(|(up, _)| up).last()
         {
@@ -309,7 +313,7 @@ impl<'s> Pass<'_, 's> {
 
     /// Inserts the missing parenthesis before an `Atom`; returns `false` if brackets would be nested too deep.
     fn lone_atom(&mut self, index: usize, token: Token<'s>) -> bool {
-        let place = Place::new(token.place.start, token.place.start);
+        let place = TextRange::new(token.place.start, token.place.start);
         if !self.open(BracketKind::Atom, index, Token { kind: Tok::LParen, place }) {
             return false;
         }

@@ -4,7 +4,7 @@
 use bumpalo::Bump;
 
 use super::regions::Regions;
-use super::source::Source;
+use super::source::FileText;
 use super::token::{Tok, Token};
 use super::tree::{Condition, ConditionNode, Element, Exec, File, Formal, Plan, Primary};
 use crate::diagnostic::Span;
@@ -12,7 +12,7 @@ use crate::diagnostic::Span;
 /// Removes nodes in regions with a reported error, and plans without a name, from the tree.
 pub(super) fn take_out<'s>(
     file: &mut File<'s>,
-    source: Source<'s>,
+    source: FileText<'s>,
     arena: &'s Bump,
     tokens: &[Token<'_>],
     regions: &Regions,
@@ -30,7 +30,7 @@ pub(super) fn take_out<'s>(
 }
 
 struct Defects<'t, 's> {
-    source: Source<'s>,
+    source: FileText<'s>,
     arena: &'s Bump,
     tokens: &'t [Token<'t>],
     regions: &'t Regions,

@@ -9,13 +9,13 @@ use super::mistakes;
 use super::nodes::Recovery;
 use super::regions::Regions;
 use super::site::Site;
-use super::source::Source;
+use super::source::FileText;
 use super::token::{Tok, Token};
 use crate::diagnostic::{Diagnostic, Edit};
 
 /// Returns the messages about the errors from which the parser recovered.
 pub(super) fn diagnostics(
-    source: Source<'_>,
+    source: FileText<'_>,
     tokens: &[Token<'_>],
     regions: &mut Regions,
     recoveries: Vec<Recovery<'_>>,
@@ -45,7 +45,7 @@ pub(super) fn diagnostics(
 }
 
 /// Returns the indices of the tokens that the edits in a message replace.
-fn rewritten(source: Source<'_>, tokens: &[Token<'_>], diagnostic: &Diagnostic) -> impl Iterator<Item = usize> {
+fn rewritten(source: FileText<'_>, tokens: &[Token<'_>], diagnostic: &Diagnostic) -> impl Iterator<Item = usize> {
     let edits = diagnostic.help.iter().filter_map(|help| help.edit.as_ref());
     let first = |edit: &Edit| {
         let range = edit.span.within(source.id);

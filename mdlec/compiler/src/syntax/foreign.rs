@@ -11,7 +11,7 @@ use advice::{advice_for, is_word};
 
 use super::header;
 use super::lexer::Lexed;
-use super::source::{Place, Source};
+use super::source::{FileText, TextRange};
 use super::token::{Tok, Token};
 use crate::diagnostic::{Code, Diagnostic};
 
@@ -23,7 +23,7 @@ fn is_like_atom(name: &str) -> bool {
 }
 
 /// Reports words of other languages, and replaces them by tokens with which parsing continues.
-pub(super) fn replace<'s>(source: Source<'s>, lexed: &mut Lexed<'s>) {
+pub(super) fn replace<'s>(source: FileText<'s>, lexed: &mut Lexed<'s>) {
     let is_foreign = |token: &Token<'_>| {
         let is_word = |name: &str| is_word(name) || is_like_atom(name) || is_like_loop(name);
         matches!(token.kind, Tok::Use | Tok::LBracket) || matches!(token.kind, Tok::Name(name) if is_word(name))
@@ -48,7 +48,7 @@ pub(super) fn replace<'s>(source: Source<'s>, lexed: &mut Lexed<'s>) {
     let at = |before: usize| moved.get(before).copied().unwrap_or(new.len());
     lexed.docs.iter_mut().for_each(|(before, _)| *before = at(*before));
     lexed.errors.iter_mut().for_each(|(before, _)| *before = at(*before));
-    let is_inside = |error: &Diagnostic, place: &Place| {
+    let is_inside = |error: &Diagnostic, place: &TextRange| {
         error
             .span()
             .is_some_and(|span| place.start <= span.within(source.id).start && span.within(source.id).end <= place.end)
@@ -89,7 +89,7 @@ fn ends(tokens: &[Token<'_>]) -> BTreeMap<usize, usize> {
 }
 
 struct Rewriting<'t, 's> {
-    source: Source<'s>,
+    source: FileText<'s>,
     old: &'t [Token<'s>],
     /// Index of the closing bracket for each opening bracket.
     ends: BTreeMap<usize, usize>,
@@ -101,7 +101,7 @@ struct Rewriting<'t, 's> {
     /// Open brackets, the innermost last.
     open: Vec<Open>,
     /// Messages, each with the index of the new token after the reported text, and the place of that text.
-    found: Vec<(usize, Place, Diagnostic)>,
+    found: Vec<(usize, TextRange, Diagnostic)>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -134,16 +134,16 @@ impl<'s> Rewriting<'_, 's> {
         at.checked_sub(back).and_then(|at| self.kind(at))
     }
 
-    fn place(&self, first: usize, last: usize) -> Place {
-        let get = |at: usize| self.old.get(at).map_or(Place::new(0, 0), |token| token.place);
-        Place::new(get(first).start, get(last).end.max(get(first).end))
+    fn place(&self, first: usize, last: usize) -> TextRange {
+        let get = |at: usize| self.old.get(at).map_or(TextRange::new(0, 0), |token| token.place);
+        TextRange::new(get(first).start, get(last).end.max(get(first).end))
     }
 
-    fn push(&mut self, kind: Tok<'s>, place: Place) {
+    fn push(&mut self, kind: Tok<'s>, place: TextRange) {
         self.new.push(Token { kind, place });
     }
 
-    fn report(&mut self, place: Place, diagnostic: Diagnostic) {
+    fn report(&mut self, place: TextRange, diagnostic: Diagnostic) {
         self.found.push((self.new.len(), place, diagnostic));
     }
 
@@ -310,7 +310,7 @@ impl<'s> Rewriting<'_, 's> {
         let (opener, closer) = (self.place(at, at), self.place(end, end));
         let span = self.source.span(opener);
         let diagnostic = Diagnostic::new(Code::E0102, "an atom is written in parentheses", span, "not expected here");
-        let inside = self.source.slice(Place::new(opener.end, closer.start));
+        let inside = self.source.slice(TextRange::new(opener.end, closer.start));
         let diagnostic = match inside.len() <= 60 && !inside.contains('\n') {
             true => {
                 let whole = self.source.span(self.place(at, end));
@@ -331,8 +331,8 @@ impl<'s> Rewriting<'_, 's> {
         if !matches!(self.kind(at + 1), Some(Tok::Str(_))) {
             return None;
         }
-        let is_hashed = self.source.slice(Place::new(0, place.start)).ends_with('#');
-        let written = Place::new(place.start - usize::from(is_hashed), place.end);
+        let is_hashed = self.source.slice(TextRange::new(0, place.start)).ends_with('#');
+        let written = TextRange::new(place.start - usize::from(is_hashed), place.end);
         let span = self.source.span(written);
         let name = self.source.slice(written);
         let diagnostic = Diagnostic::new(Code::E0102, format!("MDLe has no `{name}`"), span, "not expected here");
@@ -356,7 +356,7 @@ impl<'s> Rewriting<'_, 's> {
             return None;
         }
         let start = word.end + line.find(path)?;
-        let place = Place::new(start, start + path.len());
+        let place = TextRange::new(start, start + path.len());
         let span = self.source.span(place);
         let message = "the name of a file is written between double quotes";
         let diagnostic = Diagnostic::new(Code::E0102, message, span, "no quotes around this");

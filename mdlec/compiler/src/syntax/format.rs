@@ -8,7 +8,7 @@ mod comments;
 mod lines;
 mod pieces;
 
-use super::source::Source;
+use super::source::FileText;
 use super::token::Tok;
 use super::tree::{Element, File, Plan, Primary};
 use super::{arena_for, parse, printed};
@@ -34,10 +34,10 @@ pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     if has_errors(&found) {
         return Err(found);
     }
-    let text = printed::with_braces(Source::new(id, text));
+    let text = printed::with_braces(FileText::new(id, text));
     let arena = arena_for(&text);
     let (file, _) = parse(id, &text, &arena);
-    let source = Source::new(id, &text);
+    let source = FileText::new(id, &text);
     let mut layout = Layout { id: source.id, pieces: Pieces::of(source), at: 0, lines: Lines::default(), depth: 0 };
     layout.file(&file);
     Ok(layout.lines.text())

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::source::Source;
+use super::source::FileText;
 use super::token::{Tok, Token};
 
 /// The braces that end before a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum End {
+pub(super) enum BraceEnd {
     /// All open braces: another plan begins at this indentation.
     OfPlan,
     /// The brace that opens at the token with this index, and the brackets inside it.
@@ -25,7 +25,7 @@ struct Open {
 
 /// Returns the tokens before which a brace must be closed. Such a token begins a line that is not indented deeper than
 /// the line of the brace, although a line between the two lines is.
-pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, End> {
+pub(super) fn ends(source: FileText<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, BraceEnd> {
     let mut ends = BTreeMap::new();
     let mut open: Vec<Open> = Vec::new();
     let mut indentation = 0;
@@ -41,7 +41,7 @@ pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, 
                     break;
                 }
                 // If several braces end here, the outermost is kept.
-                ends.insert(at, End::OfBrace(inner.brace));
+                ends.insert(at, BraceEnd::OfBrace(inner.brace));
                 open.pop();
             }
         }
@@ -56,7 +56,7 @@ pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, 
 }
 
 /// Returns the number of characters before a place in its line, if all of them are spaces or tabs.
-fn indentation_of(source: Source<'_>, start: usize) -> Option<usize> {
+fn indentation_of(source: FileText<'_>, start: usize) -> Option<usize> {
     let before = source.text.get(..start)?;
     let line = before.rsplit('\n').next().unwrap_or(before);
     line.chars().all(char::is_whitespace).then(|| line.chars().count())

@@ -6,7 +6,7 @@ use logos::{Lexer, Logos};
 use super::label::label_length;
 use super::lexical;
 use super::number::split;
-use super::source::{Place, Source};
+use super::source::{FileText, TextRange};
 use super::token::{Tok, Token};
 use crate::diagnostic::Diagnostic;
 
@@ -22,7 +22,7 @@ pub(super) struct Lexed<'s> {
 }
 
 /// Returns the tokens of a text, its doc comments and its lexical errors.
-pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
+pub(super) fn lex(source: FileText<'_>) -> Lexed<'_> {
     let mut reader = Reader {
         source,
         lexed: Lexed::default(),
@@ -35,7 +35,7 @@ pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
     let mut lexer = Tok::lexer(source.text);
     while let Some(token) = lexer.next() {
         let token = token.map(|kind| labelled(kind, &mut lexer));
-        let place = Place::new(lexer.span().start, lexer.span().end);
+        let place = TextRange::new(lexer.span().start, lexer.span().end);
         if place.start < reader.skipped || reader.file(token.as_ref().ok(), place) {
             continue;
         }
@@ -64,14 +64,14 @@ fn labelled<'s>(kind: Tok<'s>, lexer: &mut Lexer<'s, Tok<'s>>) -> Tok<'s> {
 
 /// Collector of the tokens of a text.
 struct Reader<'s> {
-    source: Source<'s>,
+    source: FileText<'s>,
     lexed: Lexed<'s>,
     /// Byte offset of the brace that closes the current `\text{…}`.
     text_ends: usize,
     /// End of the last token, including the typesetting that touches it.
     touches: usize,
     /// Place of the unexpected characters just read, which have not been reported yet.
-    run: Option<Place>,
+    run: Option<TextRange>,
     /// End of a file name that was read although it is not in double quotes.
     skipped: usize,
     /// State of the dots in signals; `None` before the head of a group has been read.
@@ -85,13 +85,13 @@ struct Dots {
     /// conditions.
     depth: usize,
     /// The dot after the last token, if a word touches both sides of it.
-    last: Option<Place>,
+    last: Option<TextRange>,
 }
 
 impl<'s> Reader<'s> {
     /// Reports a file name without double quotes, such as `'home.csv'` or `C:\home.csv`, and reads it as a string.
     /// Returns `false` if no such name begins with this token.
-    fn file(&mut self, token: Option<&Tok<'s>>, place: Place) -> bool {
+    fn file(&mut self, token: Option<&Tok<'s>>, place: TextRange) -> bool {
         let (start, name, end) = match token {
             None => match quoted(self.source.text, place) {
                 Some((name, end)) => (place.start, name, end),
@@ -104,7 +104,7 @@ impl<'s> Reader<'s> {
             Some(_) => return false,
         };
         self.end_run();
-        let whole = Place::new(start, end);
+        let whole = TextRange::new(start, end);
         self.lexed.tokens.retain(|token| token.place.start < start);
         self.report(lexical::file(self.source, whole, name));
         self.push(Tok::Str(name), whole);
@@ -114,7 +114,7 @@ impl<'s> Reader<'s> {
 
     fn token(&mut self, token: Token<'s>) {
         self.end_run();
-        let Place { start, end } = token.place;
+        let TextRange { start, end } = token.place;
         if let Some(dot) = self.dots.as_mut().and_then(|dots| dots.last.take()) {
             if matches!(token.kind, Tok::Name(_)) {
                 return self.join(end);
@@ -160,7 +160,7 @@ impl<'s> Reader<'s> {
     }
 
     /// Processes a dot: in a file with a group it may be between a robot and its signal.
-    fn dot(&mut self, place: Place) {
+    fn dot(&mut self, place: TextRange) {
         let is_name = self.touches == place.start && self.after_name();
         let rest = self.source.text.get(place.end..).unwrap_or("");
         let behind = rest.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_');
@@ -190,7 +190,7 @@ impl<'s> Reader<'s> {
         true
     }
 
-    fn push(&mut self, kind: Tok<'s>, place: Place) {
+    fn push(&mut self, kind: Tok<'s>, place: TextRange) {
         self.touches = place.end;
         self.lexed.tokens.push(Token { kind, place });
     }
@@ -220,15 +220,15 @@ impl<'s> Reader<'s> {
 
     /// Reports and drops a text that touches a number and is not a unit. A text that does not touch the number is a
     /// name.
-    fn number(&mut self, number: &'s str, tail: &'s str, place: Place) {
+    fn number(&mut self, number: &'s str, tail: &'s str, place: TextRange) {
         self.end_run();
         let unit = tail.trim_start();
         if unit.len() < tail.len() {
             // Like a unit without `/`, the unit becomes a name, so that the error message about the quark can show its
             // arguments.
             let (end, start) = (place.start + number.len(), place.end - unit.len());
-            self.push(Tok::Number(number), Place::new(place.start, end));
-            self.push(Tok::Name(unit), Place::new(start, place.end));
+            self.push(Tok::Number(number), TextRange::new(place.start, end));
+            self.push(Tok::Name(unit), TextRange::new(start, place.end));
             return;
         }
         self.report(lexical::number(self.source, number, tail, place));
@@ -236,7 +236,7 @@ impl<'s> Reader<'s> {
     }
 
     /// Drops the braces of `\text{…}`, which do not separate a name from its parenthesis.
-    fn text(&mut self, place: Place) {
+    fn text(&mut self, place: TextRange) {
         match text_end(self.source.text, place.end) {
             Some(end) => self.text_ends = end,
             None => self.report(lexical::text(self.source, place)),
@@ -244,14 +244,14 @@ impl<'s> Reader<'s> {
         self.typesetting(place);
     }
 
-    fn typesetting(&mut self, place: Place) {
+    fn typesetting(&mut self, place: TextRange) {
         if place.start == self.touches {
             self.touches = place.end;
         }
     }
 
     /// Extends the run of neighbouring unexpected characters, which are reported together.
-    fn character(&mut self, place: Place) {
+    fn character(&mut self, place: TextRange) {
         match &mut self.run {
             Some(run) if run.end == place.start => run.end = place.end,
             Some(_) | None => {
@@ -269,7 +269,7 @@ impl<'s> Reader<'s> {
 }
 
 /// Returns the text in quotes that are not double quotes, with the offset of its end.
-fn quoted(text: &str, opener: Place) -> Option<(&str, usize)> {
+fn quoted(text: &str, opener: TextRange) -> Option<(&str, usize)> {
     let closers: &[char] = match text.get(opener.start..opener.end)? {
         "'" | "‘" | "`" => &['\'', '’', '`', '‘'],
         "“" | "”" | "„" => &['“', '”'],
@@ -283,7 +283,7 @@ fn quoted(text: &str, opener: Place) -> Option<(&str, usize)> {
 }
 
 /// Returns the start and the text of a Windows path whose first backslash is at `backslash`.
-fn drive(text: &str, backslash: Place) -> Option<(usize, &str)> {
+fn drive(text: &str, backslash: TextRange) -> Option<(usize, &str)> {
     let start = backslash.start.checked_sub(2)?;
     let is_drive = text.get(start..backslash.start)?.starts_with(|c: char| c.is_ascii_alphabetic());
     let is_word = text.get(..start)?.ends_with([' ', '(', '\t']);

@@ -3,12 +3,12 @@
 
 use super::arithmetic::{arithmetic, computed, foreign_unit, sum_of_units, word};
 use super::number::split;
-use super::source::{Place, Source};
+use super::source::{FileText, TextRange};
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic, Span};
 
 /// Reports a run of characters with which no token begins.
-pub(super) fn characters(source: Source<'_>, place: Place) -> Diagnostic {
+pub(super) fn characters(source: FileText<'_>, place: TextRange) -> Diagnostic {
     let found = source.slice(place);
     if let Some(diagnostic) = arithmetic(source, found, place) {
         return diagnostic;
@@ -24,7 +24,7 @@ pub(super) fn characters(source: Source<'_>, place: Place) -> Diagnostic {
 }
 
 /// Returns `diagnostic` with help about the usual meaning of the characters `found`.
-fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -> Diagnostic {
+fn characters_help(diagnostic: Diagnostic, source: FileText<'_>, found: &str, place: TextRange) -> Diagnostic {
     let after = source.text.get(place.end..).unwrap_or("");
     let next = after.chars().next();
     let operator =
@@ -64,7 +64,7 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
         }
         "." if next.is_some_and(|c| c.is_ascii_digit()) && begins_operand(source, place.start) => {
             let digits: String = after.chars().take_while(char::is_ascii_digit).take(12).collect();
-            let span = source.span(Place::new(place.start, place.end + digits.len()));
+            let span = source.span(TextRange::new(place.start, place.end + digits.len()));
             diagnostic.fix("a number has digits on both sides of its dot: {}", span, format!("0.{digits}"))
         }
         "-" | "+" => sign(diagnostic, source, found, place),
@@ -76,7 +76,7 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
 }
 
 /// Returns the message with help about a text that contains the characters, such as `T#5s`, `bend.csv` or `r0 != 50cm`.
-fn words_around(diagnostic: &Diagnostic, source: Source<'_>, found: &str, place: Place) -> Option<Diagnostic> {
+fn words_around(diagnostic: &Diagnostic, source: FileText<'_>, found: &str, place: TextRange) -> Option<Diagnostic> {
     let (before, after) = (source.text.get(..place.start)?, source.text.get(place.end..)?);
     let left = word(before);
     let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
@@ -89,7 +89,7 @@ fn words_around(diagnostic: &Diagnostic, source: Source<'_>, found: &str, place:
         None => (0, after.get(..of(after))?),
     };
     let end = place.end + skipped + right.len();
-    let whole = |left: &str| source.span(Place::new(place.start - left.len(), end));
+    let whole = |left: &str| source.span(TextRange::new(place.start - left.len(), end));
     let (number, unit) = split(right);
     let diagnostic = diagnostic.clone();
     match found {
@@ -107,7 +107,7 @@ fn words_around(diagnostic: &Diagnostic, source: Source<'_>, found: &str, place:
             let is_whole = ["(", " OR", " AND", " or", " and"].iter().any(|end| begins.ends_with(end));
             let is_signal = signal.starts_with(char::is_alphabetic) && is_whole;
             let words = "write `NOT` before an equality: {}";
-            let span = source.span(Place::new(start, end));
+            let span = source.span(TextRange::new(start, end));
             is_signal.then(|| diagnostic.fix(words, span, format!("NOT {signal} == {right}")))
         }
         _ => None,
@@ -115,7 +115,7 @@ fn words_around(diagnostic: &Diagnostic, source: Source<'_>, found: &str, place:
 }
 
 /// Returns `true` if only spaces and tabs precede this place in its line.
-fn begins_line(source: Source<'_>, at: usize) -> bool {
+fn begins_line(source: FileText<'_>, at: usize) -> bool {
     let before = source.text.get(..at).unwrap_or("");
     before.rsplit('\n').next().unwrap_or(before).trim().is_empty()
 }
@@ -125,39 +125,39 @@ const TYPESETTING: &str = "of typesetting only `\\\\`, `\\{`, `\\}`, `\\text{…
 
 /// Returns `true` if an operand can begin at this offset: after a space, an opening bracket, or a sign between
 /// operands.
-fn begins_operand(source: Source<'_>, at: usize) -> bool {
+fn begins_operand(source: FileText<'_>, at: usize) -> bool {
     let before = source.text.get(..at).unwrap_or("");
     before.is_empty() || before.ends_with(|c: char| c.is_whitespace() || "(,<>=".contains(c))
 }
 
 /// Returns `true` if a name may end at this offset.
-fn ends_name(source: Source<'_>, at: usize) -> bool {
+fn ends_name(source: FileText<'_>, at: usize) -> bool {
     source.text.get(..at).is_some_and(|before| before.ends_with(|c: char| c.is_alphanumeric() || c == '_'))
 }
 
 /// Reports a file name that is not in double quotes.
-pub(super) fn file(source: Source<'_>, place: Place, name: &str) -> Diagnostic {
+pub(super) fn file(source: FileText<'_>, place: TextRange, name: &str) -> Diagnostic {
     let span = source.span(place);
     let diagnostic = Diagnostic::new(Code::E0101, "this text is not between double quotes", span, "not part of MDLe");
     diagnostic.fix("write {}", span, format!("\"{name}\""))
 }
 
 /// Returns `diagnostic` with help about a sign that does not touch its number.
-fn sign(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -> Diagnostic {
+fn sign(diagnostic: Diagnostic, source: FileText<'_>, found: &str, place: TextRange) -> Diagnostic {
     let after = source.text.get(place.end..).unwrap_or("");
     let spaces = after.len() - after.trim_start_matches([' ', '\t']).len();
     let (number, _) = split(after.get(spaces..).unwrap_or(""));
     if number.is_empty() || number.starts_with(['+', '-']) {
         return diagnostic.help("a sign touches its number: `-5`");
     }
-    let span = source.span(Place::new(place.start, place.end + spaces + number.len()));
+    let span = source.span(TextRange::new(place.start, place.end + spaces + number.len()));
     let is_plain = source.slice(place).is_ascii();
     let words = if is_plain { "a sign touches its number: {}" } else { "the minus sign is a plain `-`: {}" };
     diagnostic.fix(words, span, format!("{found}{number}"))
 }
 
 /// Returns a word that replaces characters, with spaces where the characters touch other text.
-fn apart(source: Source<'_>, place: Place, word: &str) -> String {
+fn apart(source: FileText<'_>, place: TextRange, word: &str) -> String {
     let is_blank = |c: Option<char>| c.is_none_or(char::is_whitespace);
     let before = source.text.get(..place.start).and_then(|before| before.chars().next_back());
     let after = source.text.get(place.end..).and_then(|after| after.chars().next());
@@ -166,7 +166,7 @@ fn apart(source: Source<'_>, place: Place, word: &str) -> String {
 }
 
 /// Reports a typesetting command that has no meaning in a plan.
-pub(super) fn command(source: Source<'_>, place: Place) -> Diagnostic {
+pub(super) fn command(source: FileText<'_>, place: TextRange) -> Diagnostic {
     let found = source.slice(place);
     let diagnostic = Diagnostic::new(
         Code::E0101,
@@ -190,31 +190,31 @@ pub(super) fn command(source: Source<'_>, place: Place) -> Diagnostic {
 }
 
 /// Reports a block comment that is never closed.
-pub(super) fn comment(source: Source<'_>, place: Place) -> Diagnostic {
-    let opener = Place::new(place.start, place.start + 2);
+pub(super) fn comment(source: FileText<'_>, place: TextRange) -> Diagnostic {
+    let opener = TextRange::new(place.start, place.start + 2);
     Diagnostic::new(Code::E0105, "this comment does not end", source.span(opener), "begins here")
         .help("end it with `*/`, or write `//` for a comment that ends with its line")
 }
 
 /// Reports a string that does not end on its line.
-pub(super) fn string(source: Source<'_>, place: Place) -> Diagnostic {
-    let opener = source.span(Place::new(place.start, place.start + 1));
+pub(super) fn string(source: FileText<'_>, place: TextRange) -> Diagnostic {
+    let opener = source.span(TextRange::new(place.start, place.start + 1));
     let diagnostic = Diagnostic::new(Code::E0105, "this text does not end on its line", opener, "begins here");
     if place.end == place.start + 1 {
         return diagnostic.help("end it with `\"`, or remove this quote");
     }
-    diagnostic.fix("end it with {}", source.span(Place::new(place.end, place.end)), "\"")
+    diagnostic.fix("end it with {}", source.span(TextRange::new(place.end, place.end)), "\"")
 }
 
 /// Reports a `\text{` that is never closed.
-pub(super) fn text(source: Source<'_>, place: Place) -> Diagnostic {
+pub(super) fn text(source: FileText<'_>, place: TextRange) -> Diagnostic {
     Diagnostic::new(Code::E0103, "this `\\text{` is never closed", source.span(place), "opened here")
         .help("close it with `}`; it contains no braces")
 }
 
 /// Reports a number that touches text other than a unit.
-pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place) -> Diagnostic {
-    let span = source.span(Place::new(place.end - tail.len(), place.end));
+pub(super) fn number(source: FileText<'_>, number: &str, tail: &str, place: TextRange) -> Diagnostic {
+    let span = source.span(TextRange::new(place.end - tail.len(), place.end));
     let whole = source.span(place);
     if tail.starts_with('.') {
         return dot(number, tail, span, whole);
@@ -329,14 +329,14 @@ fn shown(text: &str) -> String {
 }
 
 /// Returns `diagnostic` with help about a comment in `(*` and `*)`; the characters at both ends have the same help.
-fn pascal_comment(diagnostic: Diagnostic, source: Source<'_>, place: Place) -> Diagnostic {
+fn pascal_comment(diagnostic: Diagnostic, source: FileText<'_>, place: TextRange) -> Diagnostic {
     let text = source.text;
     let begins = |at: usize| text.get(..at).filter(|before| before.ends_with('(')).map(|before| before.len() - 1);
     let ends = |at: usize| text.get(at..).filter(|after| after.starts_with("*)")).map(|_| at + 2);
     let start = begins(place.start).or_else(|| text.get(..place.start)?.rfind("(*"));
     let end = ends(place.start).or_else(|| Some(place.end + text.get(place.end..)?.find("*)")? + 2));
     let (Some(start), Some(end)) = (start, end) else { return diagnostic };
-    let span = source.span(Place::new(start, end));
+    let span = source.span(TextRange::new(start, end));
     let inside = text.get(start + 2..end - 2).unwrap_or_default();
     let message = "a comment is not written between `(*` and `*)`";
     Diagnostic::new(Code::E0101, message, span, "not part of MDLe").fix("write {}", span, format!("/*{inside}*/"))

@@ -50,7 +50,7 @@ use std::ops::Range;
 use crate::diagnostic::{Code, Diagnostic, SourceId, sort};
 pub use files::{Files, Loader, NoFiles, parse_with};
 use nodes::Nodes;
-use source::{Location, Place, Source};
+use source::{FileText, Location, TextRange};
 
 pub use format::format;
 pub(crate) use lexical::nearest_unit;
@@ -69,7 +69,7 @@ pub fn arena_for(text: &str) -> Arena {
 /// Parses a text; returns its tree and all its diagnostics, in the order of the text.
 #[must_use]
 pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::File<'s>, Vec<Diagnostic>) {
-    let source = Source::new(source, text);
+    let source = FileText::new(source, text);
     let mut lexed = lexer::lex(source);
     foreign::replace(source, &mut lexed);
     printed::read(&mut lexed);
@@ -78,7 +78,7 @@ pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::Fi
 
     let mut nodes = Nodes::new(source, arena, &balanced.tokens, &balanced.docs);
     let tokens = balanced.tokens.iter().enumerate().map(|(at, token)| {
-        let Place { start, end } = token.place;
+        let TextRange { start, end } = token.place;
         Ok((Location::new(at, start), token.kind, Location::new(at + 1, end)))
     });
     let result = grammar::FileParser::new().parse(&mut nodes, tokens);
@@ -104,8 +104,13 @@ pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::Fi
 }
 
 /// Reports a file without any plan.
-fn no_plan(source: Source<'_>) -> Diagnostic {
+fn no_plan(source: FileText<'_>) -> Diagnostic {
     let end = source.text.trim_end().len();
-    Diagnostic::new(Code::E0107, "this file has no plan", source.span(Place::new(end, end)), "a plan is missing here")
-        .help("the smallest plan is `{ Rest (Atom (wait 5) stop) }`")
+    Diagnostic::new(
+        Code::E0107,
+        "this file has no plan",
+        source.span(TextRange::new(end, end)),
+        "a plan is missing here",
+    )
+    .help("the smallest plan is `{ Rest (Atom (wait 5) stop) }`")
 }

@@ -10,7 +10,7 @@ use bumpalo::Bump;
 use lalrpop_util::ErrorRecovery;
 
 use super::label::label;
-use super::source::{Location, Source};
+use super::source::{FileText, Location};
 use super::token::{Tok, Token};
 use super::tree::{
     Arg, Atom, Call, Condition, ConditionNode, Count, Element, Exec, File, Formal, Frame, Marks, Name, Number, Param,
@@ -33,7 +33,7 @@ pub(super) struct Head<'s> {
 
 /// State of the constructors: the input, and the nodes and errors so far.
 pub(super) struct Nodes<'t, 's> {
-    pub(super) source: Source<'s>,
+    pub(super) source: FileText<'s>,
     /// Arena of the tree.
     arena: &'s Bump,
     /// Tokens of the text, from which the nodes of broken elements are made.
@@ -53,7 +53,7 @@ pub(super) struct Nodes<'t, 's> {
 impl<'t, 's> Nodes<'t, 's> {
     /// Returns constructors for the tokens of a text.
     pub(super) fn new(
-        source: Source<'s>,
+        source: FileText<'s>,
         arena: &'s Bump,
         tokens: &'t [Token<'s>],
         docs: &'t [(usize, &'s str)],

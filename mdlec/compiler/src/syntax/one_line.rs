@@ -1,7 +1,7 @@
 //! Writes a part of a plan's text on one line, for reports that repeat the user's words.
 
 use super::lexer::lex;
-use super::source::Source;
+use super::source::FileText;
 use crate::diagnostic::SourceId;
 
 /// Returns the tokens of `text` on one line, without comments, typesetting and enclosing parentheses; one space
@@ -9,7 +9,7 @@ use crate::diagnostic::SourceId;
 /// the corresponding offsets in the line.
 #[must_use]
 pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String, [Option<usize>; N]) {
-    let tokens = lex(Source { id: SourceId(0), text }).tokens;
+    let tokens = lex(FileText { id: SourceId(0), text }).tokens;
     let is = |index: usize, parenthesis: &str| {
         tokens.get(index).and_then(|token| text.get(token.place.start..token.place.end)) == Some(parenthesis)
     };

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::header::{self, Begins};
 use super::lexer::{Lexed, lex};
-use super::source::{Place, Source};
+use super::source::{FileText, TextRange};
 use super::token::{Tok, Token};
 
 /// Name of a plan that is printed without a name.
@@ -34,7 +34,7 @@ pub(super) fn read(lexed: &mut Lexed<'_>) {
         }
         if plans.next_if(|plan| plan.1 == at).is_some() {
             let end = token.place.end;
-            lexed.tokens.push(Token { kind: Tok::RBrace, place: Place::new(end, end) });
+            lexed.tokens.push(Token { kind: Tok::RBrace, place: TextRange::new(end, end) });
         }
     }
     let end = lexed.tokens.len();
@@ -44,7 +44,7 @@ pub(super) fn read(lexed: &mut Lexed<'_>) {
 }
 
 /// Returns the text with braces and a name for each plan that has no braces.
-pub(super) fn with_braces(source: Source<'_>) -> Cow<'_, str> {
+pub(super) fn with_braces(source: FileText<'_>) -> Cow<'_, str> {
     let tokens = lex(source).tokens;
     let (_, plans) = found(&tokens);
     if plans.is_empty() {
@@ -56,13 +56,13 @@ pub(super) fn with_braces(source: Source<'_>) -> Cow<'_, str> {
         head(&tokens, first, &mut new);
         let (Some(start), Some(end)) = (tokens.get(first), tokens.get(last)) else { continue };
         let opening = if new.len() > 2 { format!("{{ {NAME} (null) ") } else { format!("{{ {NAME} ") };
-        text += source.slice(Place::new(copied, start.place.start));
+        text += source.slice(TextRange::new(copied, start.place.start));
         text += &opening;
-        text += source.slice(Place::new(start.place.start, end.place.end));
+        text += source.slice(TextRange::new(start.place.start, end.place.end));
         text += " }";
         copied = end.place.end;
     }
-    text += source.slice(Place::new(copied, source.text.len()));
+    text += source.slice(TextRange::new(copied, source.text.len()));
     Cow::Owned(text)
 }
 
@@ -70,7 +70,7 @@ pub(super) fn with_braces(source: Source<'_>) -> Cow<'_, str> {
 /// condition.
 fn head<'s>(tokens: &[Token<'s>], at: usize, new: &mut Vec<Token<'s>>) {
     let start = tokens.get(at).map_or(0, |token| token.place.start);
-    let mut push = |kind| new.push(Token { kind, place: Place::new(start, start) });
+    let mut push = |kind| new.push(Token { kind, place: TextRange::new(start, start) });
     [Tok::LBrace, Tok::Name(NAME)].into_iter().for_each(&mut push);
     if !header::is_element(behind(tokens, at)) {
         [Tok::LParen, Tok::Null, Tok::RParen].into_iter().for_each(push);

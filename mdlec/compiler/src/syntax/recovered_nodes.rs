@@ -2,7 +2,7 @@
 //! tokens.
 
 use super::nodes::{Head, Nodes, Recovery};
-use super::source::{Location, Place};
+use super::source::{Location, TextRange};
 use super::tree::{Call, Condition, ConditionNode, Element, Name, Primary};
 use super::waiting::First;
 use crate::diagnostic::Span;
@@ -81,6 +81,6 @@ impl<'s> Nodes<'_, 's> {
         let first = self.tokens.get(start.token as usize).map_or(self.source.text.len(), |token| token.place.start);
         let last = (end.token as usize).checked_sub(1).and_then(|last| self.tokens.get(last));
         let last = last.map_or(first, |token| token.place.end);
-        self.source.span(Place::new(first, last.max(first)))
+        self.source.span(TextRange::new(first, last.max(first)))
     }
 }

@@ -4,13 +4,13 @@ use std::cell::OnceCell;
 use std::collections::BTreeSet;
 
 use super::header;
-use super::source::{Place, Source};
+use super::source::{FileText, TextRange};
 use super::token::{Tok, Token};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
 /// The place at which the parser found an unexpected token.
 pub(super) struct Site<'t, 's> {
-    pub(super) source: Source<'s>,
+    pub(super) source: FileText<'s>,
     pub(super) tokens: &'t [Token<'s>],
     pub(super) openers: &'t [Option<usize>],
     /// Names of the plans of the text, computed on first use.
@@ -117,19 +117,19 @@ impl<'s> Site<'_, 's> {
     /// for a sentence.
     pub(super) fn text(&self, first: usize, last: usize) -> Option<&'s str> {
         let (first, last) = (self.tokens.get(first)?, self.tokens.get(last)?);
-        let text = self.source.slice(Place::new(first.place.start, last.place.end));
+        let text = self.source.slice(TextRange::new(first.place.start, last.place.end));
         (!text.is_empty() && text.len() <= 60 && !text.contains('\n')).then_some(text)
     }
 
     /// Returns the span from one token to another.
     pub(super) fn span(&self, first: usize, last: usize) -> Span {
-        self.source.span(Place::new(self.place(first).start, self.place(last).end))
+        self.source.span(TextRange::new(self.place(first).start, self.place(last).end))
     }
 
     /// Returns the empty span before a token.
     pub(super) fn before_token(&self, at: usize) -> Span {
         let start = self.place(at).start;
-        self.source.span(Place::new(start, start))
+        self.source.span(TextRange::new(start, start))
     }
 
     /// Returns the index of the brace that follows a name and a group after the name.
@@ -193,9 +193,9 @@ impl<'s> Site<'_, 's> {
         diagnostic.also(self.source.span(self.place(at)), text)
     }
 
-    fn place(&self, at: usize) -> Place {
+    fn place(&self, at: usize) -> TextRange {
         let end = self.tokens.last().map_or(0, |token| token.place.end);
-        self.tokens.get(at).map_or(Place::new(end, end), |token| token.place)
+        self.tokens.get(at).map_or(TextRange::new(end, end), |token| token.place)
     }
 
     /// Reports the expected terminals and the unexpected token.

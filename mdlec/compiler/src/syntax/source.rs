@@ -4,7 +4,7 @@ use crate::diagnostic::{SourceId, Span};
 
 /// The text of a file, with the file's identifier.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Source<'s> {
+pub(super) struct FileText<'s> {
     /// Identifier of the file.
     pub(super) id: SourceId,
     /// Text of the file.
@@ -13,7 +13,7 @@ pub(super) struct Source<'s> {
 
 /// A range of the text, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct TextRange {
     /// Offset of the first byte.
     pub(super) start: usize,
     /// Offset after the last byte.
@@ -42,7 +42,7 @@ fn offset(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
 
-impl Place {
+impl TextRange {
     /// Returns the place between two byte offsets.
     pub(super) fn new(start: usize, end: usize) -> Self {
         Self { start, end }
@@ -54,7 +54,7 @@ impl Place {
     }
 }
 
-impl<'s> Source<'s> {
+impl<'s> FileText<'s> {
     /// Returns a source. Because spans have 32 bits, messages about a text that ends beyond 4 GiB point to the first
     /// file.
     pub(super) fn new(id: SourceId, text: &'s str) -> Self {
@@ -63,7 +63,7 @@ impl<'s> Source<'s> {
     }
 
     /// Converts a place to a span for trees and diagnostics.
-    pub(super) fn span(self, place: Place) -> Span {
+    pub(super) fn span(self, place: TextRange) -> Span {
         Span::new(self.id, place.start, place.end)
     }
 
@@ -74,12 +74,12 @@ impl<'s> Source<'s> {
     }
 
     /// Returns the text at a place.
-    pub(super) fn slice(self, place: Place) -> &'s str {
+    pub(super) fn slice(self, place: TextRange) -> &'s str {
         self.text.get(place.start..place.end).unwrap_or("")
     }
 
     /// Returns `true` if the place begins in the first column of its line.
-    pub(super) fn is_column_one(self, place: Place) -> bool {
+    pub(super) fn is_column_one(self, place: TextRange) -> bool {
         self.text.get(..place.start).is_some_and(|before| before.is_empty() || before.ends_with('\n'))
     }
 }

@@ -3,7 +3,7 @@
 use logos::Logos;
 
 use super::scan::{comment, doc, number, string};
-use super::source::Place;
+use super::source::TextRange;
 
 /// A token with its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -11,7 +11,7 @@ pub(super) struct Token<'s> {
     /// Kind of the token.
     pub(super) kind: Tok<'s>,
     /// Place of the token in the text.
-    pub(super) place: Place,
+    pub(super) place: TextRange,
 }
 
 /// Kind of a token.

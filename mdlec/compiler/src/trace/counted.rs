@@ -5,7 +5,7 @@ use mdle_runtime::{
     Begin, Cause, Cursor, Ending, Fsm, Here, Measured, Nanometers, Nanos, Pose, Stamp, Stamps, Transition, Turn, Watch,
 };
 
-use super::{Applied, Fired, Machine, Outcome, Reports};
+use super::{Applied, Fired, Machine, Reports, TurnResult};
 use crate::fsm;
 use crate::plan::{Interrupt, QuarkId, RecordId, Situation};
 
@@ -48,7 +48,7 @@ impl<'p> Counted<'p> {
 }
 
 impl<'p> Machine<'p> for Counted<'p> {
-    fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
+    fn turn(&mut self, reports: &Reports) -> TurnResult<'p> {
         let plan_machine = self.plan_machine;
         let begin = || mdle_runtime::Machine::begin(Scripted::new(plan_machine), reports, reports.t);
         let machine = self.machine.get_or_insert_with(begin);
@@ -60,7 +60,7 @@ impl<'p> Machine<'p> for Counted<'p> {
             (Turn::Over, _) | (Turn::Law(()), None) => Applied::Over,
         };
         let frame = machine.frame().filter(|_| matches!(applied, Applied::Law(_)));
-        Outcome { state: machine.state(), applied, frame, fired: transitions.fired }
+        TurnResult { state: machine.state(), applied, frame, fired: transitions.fired }
     }
 }
 

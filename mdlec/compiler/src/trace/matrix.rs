@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 
-use super::{Applied, COMPLETED, Fired, Machine, Moment, Outcome, Reports};
+use super::{Applied, COMPLETED, EntryTime, Fired, Machine, Reports, TurnResult};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Matrices, Transition, UnitVector, matrices};
 use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};
@@ -23,7 +23,7 @@ pub struct MatrixProduct<'p> {
     /// For each column, the indices of the interrupts that list it, outermost first.
     listing: Vec<Vec<u32>>,
     /// For each interrupt, the moment at which its scope was entered.
-    entered: Vec<Moment>,
+    entered: Vec<EntryTime>,
     /// Memories of RISING that are set. Each has the number of its interrupt and its number in that interrupt.
     risen: BTreeSet<(usize, u32)>,
     /// Facts that hold in the records of the elements that ended last.
@@ -85,7 +85,7 @@ impl<'p> MatrixProduct<'p> {
         for (number, Transition { matrix, .. }) in (0..).zip(&matrices.transitions) {
             matrix.columns().for_each(|column| listing[column].push(number));
         }
-        let entered = vec![Moment::default(); matrices.transitions.len()];
+        let entered = vec![EntryTime::default(); matrices.transitions.len()];
         let (risen, facts, e) = (BTreeSet::new(), BTreeSet::new(), UnitVector { row: 0 });
         Ok(Self { plan: plan.plan(), matrices, listing, entered, risen, facts, e, has_begun: false })
     }
@@ -130,7 +130,7 @@ impl<'p> MatrixProduct<'p> {
     }
 
     /// Multiplies the product by the matrix of this interrupt.
-    fn multiply(&mut self, number: usize, operand: Option<u32>, now: Moment) {
+    fn multiply(&mut self, number: usize, operand: Option<u32>, now: EntryTime) {
         let Transition { matrix, afresh, marks, ends_with, .. } = &self.matrices.transitions[number];
         let own = marks.iter().map(|mark| (mark, operand));
         let ended: Vec<_> = own.chain(ends_with.iter().map(|mark| (*mark, None))).collect();
@@ -171,7 +171,7 @@ impl<'p> MatrixProduct<'p> {
 }
 
 impl<'p> Machine<'p> for MatrixProduct<'p> {
-    fn turn(&mut self, y: &Reports) -> Outcome<'p> {
+    fn turn(&mut self, y: &Reports) -> TurnResult<'p> {
         if !std::mem::replace(&mut self.has_begun, true) {
             self.entered.fill(y.moment());
         }
@@ -179,13 +179,13 @@ impl<'p> Machine<'p> for MatrixProduct<'p> {
         while let Some(Factor { number, by, operands, operand }) = self.fired(y) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(y);
-                return Outcome { state: self.state(), applied: Applied::Cut, frame: None, fired };
+                return TurnResult { state: self.state(), applied: Applied::Cut, frame: None, fired };
             }
             fired.push(Fired { from: self.state(), level: self.matrices.transitions[number].level, by, operands });
             self.multiply(number, operand, y.moment());
         }
         self.settle(y);
         let applied = self.law().map_or(Applied::Over, |law| Applied::Law(&law.text));
-        Outcome { state: self.state(), applied, frame: self.frame(), fired }
+        TurnResult { state: self.state(), applied, frame: self.frame(), fired }
     }
 }

@@ -10,16 +10,16 @@ mod write;
 
 pub use counted::Counted;
 pub use matrix::MatrixProduct;
-use script::Moment;
+use script::EntryTime;
 pub use script::{Reports, Script, ScriptError};
-pub use table::Table;
+pub use table::TableMachine;
 pub use tree::{OpenPart, Step, Tree};
-pub use write::{Applied, COMPLETED, Fired, Outcome, TraceLine};
+pub use write::{Applied, COMPLETED, Fired, TraceLine, TurnResult};
 
 /// An interpreter of a plan.
 pub trait Machine<'p> {
     /// Runs one turn. Must not be called after the plan has ended.
-    fn turn(&mut self, reports: &Reports) -> Outcome<'p>;
+    fn turn(&mut self, reports: &Reports) -> TurnResult<'p>;
 }
 
 /// Traces a machine from its first turn to the turn in which the plan ends, or to the end of the script.

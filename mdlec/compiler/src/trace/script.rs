@@ -38,13 +38,13 @@ pub struct Reports {
 
 /// Moment at which a scope was entered, as all machines except `counted` keep it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Moment {
+pub(super) struct EntryTime {
     t: Nanos,
     way: Nanometers,
     heading: Radians,
 }
 
-impl Moment {
+impl EntryTime {
     /// Returns `true` if at least `nanos` nanoseconds have passed since this moment.
     pub(super) fn waited(self, nanos: u64, now: &Reports) -> bool {
         self.since(now) >= Nanos(nanos)
@@ -73,8 +73,8 @@ impl Moment {
 
 impl Reports {
     /// Returns the moment of this turn.
-    pub(super) fn moment(&self) -> Moment {
-        Moment { t: self.t, way: self.way, heading: self.heading }
+    pub(super) fn moment(&self) -> EntryTime {
+        EntryTime { t: self.t, way: self.way, heading: self.heading }
     }
 }
 

@@ -9,14 +9,14 @@ use std::ops::Range;
 
 use mdle_runtime::TRANSITIONS_PER_TURN;
 
-use super::{Applied, COMPLETED, Fired, Machine, Moment, Outcome, Reports};
+use super::{Applied, COMPLETED, EntryTime, Fired, Machine, Reports, TurnResult};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::expanded_states;
 use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Plan, Quark, QuarkId, Record, RecordId, Scope, Situation};
 
 /// A plan as a table, with the current state.
 #[derive(Debug)]
-pub struct Table<'p> {
+pub struct TableMachine<'p> {
     plan: &'p Plan,
     /// States except the termination state, in order.
     states: Vec<AtomState<'p>>,
@@ -73,7 +73,7 @@ struct Next {
 /// Memory of a scope since it was entered.
 #[derive(Debug, Clone)]
 struct Memory {
-    entered: Moment,
+    entered: EntryTime,
     /// Memories of RISING in the scope's interrupt.
     rising: Vec<bool>,
 }
@@ -89,7 +89,7 @@ struct FiredRow<'p> {
 
 /// Situation of a row's condition: the table and the row's memory, with the reports of the turn.
 struct Reading<'t, 'p> {
-    table: &'t Table<'p>,
+    table: &'t TableMachine<'p>,
     memory: &'t Memory,
     reports: &'t Reports,
 }
@@ -116,7 +116,7 @@ impl Situation for Reading<'_, '_> {
     }
 }
 
-impl<'p> Table<'p> {
+impl<'p> TableMachine<'p> {
     /// Creates the table, before the first turn.
     ///
     /// # Errors
@@ -131,7 +131,7 @@ impl<'p> Table<'p> {
         let Filling { states, rows, .. } = filling;
         let fresh = |row: &Row<'_>| {
             let rising = vec![false; row.interrupt.memories as usize];
-            Memory { entered: Moment::default(), rising }
+            Memory { entered: EntryTime::default(), rising }
         };
         let records = rows.iter().filter_map(|row| row.record).map(|record| (record.id, empty(record))).collect();
         Ok(Self { plan, memories: rows.iter().map(fresh).collect(), records, states, rows, state: 0, has_begun: false })
@@ -162,7 +162,7 @@ impl<'p> Table<'p> {
         done.then_some(FiredRow { row: state.own, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
-    fn follow(&mut self, ending: &FiredRow<'p>, now: Moment) {
+    fn follow(&mut self, ending: &FiredRow<'p>, now: EntryTime) {
         self.record(ending);
         let Next { state, afresh } = self.rows[ending.row].next.clone();
         for row in afresh {
@@ -212,8 +212,8 @@ impl<'p> Table<'p> {
     }
 }
 
-impl<'p> Machine<'p> for Table<'p> {
-    fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
+impl<'p> Machine<'p> for TableMachine<'p> {
+    fn turn(&mut self, reports: &Reports) -> TurnResult<'p> {
         if !std::mem::replace(&mut self.has_begun, true) {
             // The scopes that are entered later get a new moment at their entry.
             self.memories.iter_mut().for_each(|memory| memory.entered = reports.moment());
@@ -222,7 +222,7 @@ impl<'p> Machine<'p> for Table<'p> {
         while let Some(mut ending) = self.fired(reports) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(reports);
-                return Outcome { state: self.number(), applied: Applied::Cut, frame: None, fired };
+                return TurnResult { state: self.number(), applied: Applied::Cut, frame: None, fired };
             }
             let operands = std::mem::take(&mut ending.operands);
             fired.push(Fired { from: self.number(), level: self.rows[ending.row].level, by: ending.by, operands });
@@ -232,7 +232,7 @@ impl<'p> Machine<'p> for Table<'p> {
         let state = self.states.get(self.state);
         let applied = state.map_or(Applied::Over, |state| Applied::Law(&state.law.text));
         let frame = state.and_then(|state| Some(self.memories[state.here?].entered.frame(state.turned)));
-        Outcome { state: self.number(), applied, frame, fired }
+        TurnResult { state: self.number(), applied, frame, fired }
     }
 }
 

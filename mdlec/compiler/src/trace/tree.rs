@@ -9,7 +9,7 @@ use std::sync::Arc;
 use mdle_runtime::Frame;
 pub use steps::{OpenPart, Step};
 
-use super::{Applied, COMPLETED, Fired, Machine, Moment, Outcome, Reports};
+use super::{Applied, COMPLETED, EntryTime, Fired, Machine, Reports, TurnResult};
 use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Scope, Situation};
 
 /// A walk over a plan.
@@ -49,7 +49,7 @@ enum NodeKind<'p> {
 #[derive(Debug, Clone)]
 struct Open {
     element: usize,
-    entered: Moment,
+    entered: EntryTime,
     /// Index, in the body, of the nested element that is open.
     index: usize,
     /// For a loop, the number of the current pass, from 1.
@@ -115,7 +115,7 @@ impl<'p> Tree<'p> {
     }
 
     /// Enters an element and all elements that open with it, down to an atom.
-    fn enter(&mut self, element: usize, first: u64, entered: Moment) {
+    fn enter(&mut self, element: usize, first: u64, entered: EntryTime) {
         let mut next = Some(element);
         while let Some(element) = next {
             let Element { kind, body, held, .. } = self.elements[element];
@@ -190,7 +190,7 @@ impl<'p> Tree<'p> {
 
     /// Ends a scope, continues outwards to the first element that has a successor, and enters that successor.
     /// Returns the number of elements that have stayed open.
-    fn leave(&mut self, ending: &EndedScope<'p>, now: Moment) -> usize {
+    fn leave(&mut self, ending: &EndedScope<'p>, now: EntryTime) -> usize {
         let mut ended = Vec::new();
         let first = self.elements[self.open[ending.place].element].kind;
         ended.push((first.marks(), ending.operand));
@@ -245,7 +245,7 @@ impl<'p> Tree<'p> {
 }
 
 impl<'p> Machine<'p> for Tree<'p> {
-    fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
+    fn turn(&mut self, reports: &Reports) -> TurnResult<'p> {
         self.begin(reports);
         let mut transitions = Vec::new();
         loop {
@@ -253,7 +253,7 @@ impl<'p> Machine<'p> for Tree<'p> {
                 Step::Transition { fired, .. } => transitions.push(fired),
                 Step::End(applied) => {
                     let frame = self.frame().filter(|_| matches!(applied, Applied::Law(_)));
-                    return Outcome { state: self.state(), applied, frame, fired: transitions };
+                    return TurnResult { state: self.state(), applied, frame, fired: transitions };
                 }
             }
         }

@@ -16,12 +16,12 @@ pub struct TraceLine<'p> {
     /// Time of the turn.
     pub t: Nanos,
     /// Transitions and input of the machine in this turn.
-    pub outcome: Outcome<'p>,
+    pub outcome: TurnResult<'p>,
 }
 
 /// Transitions and input of a machine in one turn.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome<'p> {
+pub struct TurnResult<'p> {
     /// State at the end of the turn, numbered in the expanded plan.
     pub state: u64,
     /// Input at the end of the turn.
@@ -45,7 +45,7 @@ pub enum Applied<'p> {
 
 impl fmt::Display for TraceLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Outcome { state, applied, frame, fired } = &self.outcome;
+        let TurnResult { state, applied, frame, fired } = &self.outcome;
         let law = match applied {
             Applied::Law(text) => Some(*text),
             Applied::Cut | Applied::Over => None,
@@ -61,7 +61,8 @@ mod tests {
 
     #[test]
     fn lines_look_as_the_interface_says() {
-        let outcome = Outcome { state: 1, applied: Applied::Law("goAvoid 90 40 20"), frame: None, fired: Vec::new() };
+        let outcome =
+            TurnResult { state: 1, applied: Applied::Law("goAvoid 90 40 20"), frame: None, fired: Vec::new() };
         let line = TraceLine { turn: 0, t: Nanos::ZERO, outcome };
         assert_eq!(line.to_string(), r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}"#);
 
@@ -72,7 +73,7 @@ mod tests {
         let line = TraceLine {
             turn: 1,
             t: Nanos(100_000_000),
-            outcome: Outcome { state: 9, applied: Applied::Over, frame: None, fired },
+            outcome: TurnResult { state: 9, applied: Applied::Over, frame: None, fired },
         };
         assert_eq!(
             line.to_string(),

@@ -34,7 +34,7 @@ pub(super) struct Names {
 }
 
 /// Texts of a machine's laws and interrupts in a plan.
-pub(super) struct Texts {
+pub(super) struct MachineTexts {
     /// Law of each state except the termination state.
     pub(super) laws: Vec<String>,
     /// Condition of each interrupt.
@@ -64,7 +64,7 @@ impl Names {
 }
 
 /// Returns the texts of a machine in a plan, and the names that are in use in them.
-pub(super) fn texts(machine: &Machine) -> (Texts, Names) {
+pub(super) fn texts(machine: &Machine) -> (MachineTexts, Names) {
     let mut names = Names::default();
     // Words in the texts are names that are already in use.
     let of_interrupts = machine.interrupts().iter().filter_map(|interrupt| interrupt.text.as_deref());
@@ -90,7 +90,7 @@ pub(super) fn texts(machine: &Machine) -> (Texts, Names) {
         name
     });
     let conditions = conditions.collect();
-    (Texts { laws, conditions, renamed }, names)
+    (MachineTexts { laws, conditions, renamed }, names)
 }
 
 /// Returns the words of a text.

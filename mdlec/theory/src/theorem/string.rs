@@ -4,7 +4,7 @@
 use std::cmp::Reverse;
 use std::fmt::Write;
 
-use super::names::{Names, Texts, in_a_comment, texts};
+use super::names::{MachineTexts, Names, in_a_comment, texts};
 use super::{Found, InterruptId, Machine, Run};
 
 /// Maximum nesting depth of brackets in a plan. Deeper parts become separate plans, which are used by name.
@@ -79,7 +79,7 @@ fn completed(machine: &Machine, enclosed: &[Enclosed]) -> Option<InterruptId> {
     is_plain.then_some(completed)
 }
 
-fn condition(texts: &Texts, interrupt: InterruptId) -> &str {
+fn condition(texts: &MachineTexts, interrupt: InterruptId) -> &str {
     &texts.conditions[interrupt.0 as usize]
 }
 
@@ -96,7 +96,7 @@ struct Bracket {
 struct Writer<'w> {
     machine: &'w Machine,
     found: &'w Found,
-    texts: &'w Texts,
+    texts: &'w MachineTexts,
     names: Names,
     /// Texts of the plans, the main plan first.
     plans: Vec<String>,

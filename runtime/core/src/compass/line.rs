@@ -15,7 +15,7 @@ const GUESSED: f64 = 0.02;
 
 /// Regression line through echoes, from their coordinates along and across an axis, in metres.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Line {
+pub(super) struct RegressionLine {
     count: f64,
     along: f64,
     across: f64,
@@ -28,7 +28,7 @@ pub(super) struct Line {
     pub(super) last: Nanos,
 }
 
-impl Line {
+impl RegressionLine {
     /// Returns a line without echoes, which takes only echoes after the time `last`.
     pub(super) fn since(last: Nanos) -> Self {
         Self { last, ..Self::default() }

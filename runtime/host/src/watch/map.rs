@@ -1,7 +1,7 @@
 //! Draws the floor as dots: first walls and goal, then the growing path driven, and on top the robot with its echoes.
 
 use mdle_runtime::{Meters, Radians};
-use mdle_simulator::{Footprint, Form, Place, Thing, World, Zone, edge};
+use mdle_simulator::{Footprint, Form, Point, Thing, World, Zone, edge};
 
 use super::canvas::{Canvas, Ink};
 
@@ -19,7 +19,7 @@ const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘
 pub(super) struct Map {
     canvas: Canvas,
     /// Position of the upper left corner, in metres.
-    corner: Place,
+    corner: Point,
     /// Number of dots per metre.
     scale: f64,
     /// Number of places of the path driven that are drawn.
@@ -30,9 +30,9 @@ pub(super) struct Map {
 
 impl Map {
     /// Returns the map of a floor, and of the places in `way` and `echoes`, in `columns` columns and `rows` rows.
-    pub(super) fn of(world: &World, way: &[Place], echoes: &[Place], columns: usize, rows: usize) -> Self {
+    pub(super) fn of(world: &World, way: &[Point], echoes: &[Point], columns: usize, rows: usize) -> Self {
         let places = || world.places().chain(way.iter().chain(echoes).copied());
-        let range = |of: fn(&Place) -> f64| {
+        let range = |of: fn(&Point) -> f64| {
             let least = places().map(|place| of(&place)).fold(f64::INFINITY, f64::min);
             let most = places().map(|place| of(&place)).fold(f64::NEG_INFINITY, f64::max);
             (least - AROUND, most + AROUND)
@@ -41,7 +41,7 @@ impl Map {
         let (wide, tall) = (2.0 * columns as f64, 4.0 * rows as f64);
         let scale = (wide / (right - left)).min(tall / (high - low));
         // Centres the drawing.
-        let corner = Place { x: (left + right) / 2.0 - wide / scale / 2.0, y: (low + high) / 2.0 + tall / scale / 2.0 };
+        let corner = Point { x: (left + right) / 2.0 - wide / scale / 2.0, y: (low + high) / 2.0 + tall / scale / 2.0 };
         let mut map = Self { canvas: Canvas::new(columns, rows), corner, scale, way_count: 0, echo_count: 0 };
         match world.goal.map(|goal| goal.zone) {
             Some(Zone::Rectangle { min, max }) => map.rectangle(min, max),
@@ -65,18 +65,18 @@ impl Map {
     }
 
     /// Returns `true` if a position is on the map.
-    pub(super) fn shows(&self, place: Place) -> bool {
+    pub(super) fn shows(&self, place: Point) -> bool {
         let (x, y) = self.at(place);
         (0.0..2.0 * self.canvas.columns as f64).contains(&x) && (0.0..4.0 * self.canvas.rows as f64).contains(&y)
     }
 
     /// Returns `true` if all echoes that have not been drawn yet are on the map.
-    pub(super) fn shows_new(&self, echoes: &[Place]) -> bool {
+    pub(super) fn shows_new(&self, echoes: &[Point]) -> bool {
         echoes.iter().skip(self.echo_count).all(|place| self.shows(*place))
     }
 
     /// Draws the earlier echoes that have not been drawn yet.
-    pub(super) fn draw_echoes(&mut self, echoes: &[Place]) {
+    pub(super) fn draw_echoes(&mut self, echoes: &[Point]) {
         for place in echoes.iter().skip(self.echo_count) {
             self.dot(*place, Ink::Wall);
         }
@@ -84,7 +84,7 @@ impl Map {
     }
 
     /// Draws the new part of the path driven.
-    pub(super) fn draw_way(&mut self, way: &[Place]) {
+    pub(super) fn draw_way(&mut self, way: &[Point]) {
         for place in way.iter().skip(self.way_count) {
             self.dot(*place, Ink::Way);
         }
@@ -92,7 +92,7 @@ impl Map {
     }
 
     /// Returns a map with the moving objects, each with its displacement.
-    pub(super) fn with<'t>(&self, things: impl Iterator<Item = (&'t Thing, Place)>) -> Self {
+    pub(super) fn with<'t>(&self, things: impl Iterator<Item = (&'t Thing, Point)>) -> Self {
         let mut map = self.clone();
         for (thing, displacement) in things {
             for (from, to) in thing.corners(displacement).zip(thing.corners(displacement).skip(1)) {
@@ -103,7 +103,7 @@ impl Map {
     }
 
     /// Draws the echoes that the robot hears.
-    pub(super) fn draw_current_echoes(&mut self, echoes: &[Place]) {
+    pub(super) fn draw_current_echoes(&mut self, echoes: &[Point]) {
         for echo in echoes {
             self.dot(*echo, Ink::Echo);
         }
@@ -117,21 +117,21 @@ impl Map {
         let arrow = usize::try_from(eighths.rem_euclid(8)).ok().and_then(|eighth| ARROWS.get(eighth)).unwrap_or(&'?');
         // Red if the robot touches an obstacle.
         let sign = format!("\x1b[0;1;97;{}m{arrow}", if touches { 41 } else { 44 });
-        let (x, y) = self.at(Place::of(pose));
+        let (x, y) = self.at(Point::of(pose));
         self.canvas.text(Some((((x / 2.0).max(0.0) as usize, (y / 4.0).max(0.0) as usize), &sign)))
     }
 
     /// Converts a position to dots from the upper left corner.
-    fn at(&self, place: Place) -> (f64, f64) {
+    fn at(&self, place: Point) -> (f64, f64) {
         ((place.x - self.corner.x) * self.scale, (self.corner.y - place.y) * self.scale)
     }
 
-    fn dot(&mut self, place: Place, ink: Ink) {
+    fn dot(&mut self, place: Point, ink: Ink) {
         let (x, y) = self.at(place);
         self.canvas.dot(libm::floor(x) as i64, libm::floor(y) as i64, ink);
     }
 
-    fn line(&mut self, from: Place, to: Place, ink: Ink) {
+    fn line(&mut self, from: Point, to: Point, ink: Ink) {
         let ((x1, y1), (x2, y2)) = (self.at(from), self.at(to));
         let steps = libm::ceil((x2 - x1).abs().max((y2 - y1).abs())).max(1.0);
         for step in 0..=steps as u32 {
@@ -152,12 +152,12 @@ impl Map {
         let Form::Disc { radius } = robot.form else { return };
         for number in 0..BODY_DOTS {
             let bearing = Radians::from_degrees(f64::from(number) * (360.0 / f64::from(BODY_DOTS)));
-            self.dot(Place::of(&robot.pose.towards(bearing, Meters(radius))), Ink::Wall);
+            self.dot(Point::of(&robot.pose.towards(bearing, Meters(radius))), Ink::Wall);
         }
     }
 
     /// Draws every second dot of the edge of a rectangular goal.
-    fn rectangle(&mut self, min: Place, max: Place) {
+    fn rectangle(&mut self, min: Point, max: Point) {
         let ((left, low), (right, high)) = (self.at(min), self.at(max));
         let within = |value: f64, most: usize| value.clamp(0.0, most as f64) as i64;
         let (left, right) = (within(left, 2 * self.canvas.columns), within(right, 2 * self.canvas.columns));
@@ -180,12 +180,12 @@ mod tests {
 
     fn shown(columns: usize, rows: usize) -> String {
         let world = World::office().unwrap();
-        let way: Vec<Place> = (0..430).map(|step| Place { x: 0.0, y: f64::from(step) * 0.01 }).collect();
+        let way: Vec<Point> = (0..430).map(|step| Point { x: 0.0, y: f64::from(step) * 0.01 }).collect();
         let mut map = Map::of(&world, &way, &[], columns, rows);
         map.draw_way(&way);
         let pose = Pose { x: Meters(0.0), y: Meters(4.3), theta: Radians::from_degrees(90.0) };
-        assert!(map.shows(Place::of(&pose)) && map.is_of(columns, rows));
-        map.draw_current_echoes(&[Place { x: 0.0, y: 8.0 }]);
+        assert!(map.shows(Point::of(&pose)) && map.is_of(columns, rows));
+        map.draw_current_echoes(&[Point { x: 0.0, y: 8.0 }]);
         let text = map.rows(&Footprint { pose, form: Form::Disc { radius: 0.205 } }, false).join("\n");
         // Removes the colour codes.
         let mut plain = text.split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, rest)| rest));
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn a_floor_of_unknown_walls_has_the_echoes_so_far() {
-        let place = |x, y| Place { x, y };
+        let place = |x, y| Point { x, y };
         let (way, mut echoes) = (vec![place(0.0, 0.0), place(1.0, 0.0)], vec![place(1.5, 1.0), place(1.5, -1.0)]);
         let mut map = Map::of(&World::empty(), &way, &echoes, 40, 20);
         assert!(echoes.iter().all(|echo| map.shows(*echo)) && !map.shows(place(5.0, 0.0)));

@@ -19,7 +19,7 @@ use crate::replay;
 /// Fails if the record cannot be read, or if the table cannot be written.
 pub(super) fn export(log: &Path, file: Option<&Path>) -> Result<ExitCode, Failure> {
     let (_, records) = replay::record(log)?;
-    let mut table = Table::created(file)?;
+    let mut table = TableWriter::created(file)?;
     table.write(&head())?;
     let mut outcome = Ok(ExitCode::SUCCESS);
     for turn in records.with_messages() {
@@ -36,13 +36,13 @@ pub(super) fn export(log: &Path, file: Option<&Path>) -> Result<ExitCode, Failur
 }
 
 /// Writer of lines to a file or to standard output.
-pub(super) struct Table {
+pub(super) struct TableWriter {
     out: Box<dyn Write>,
     /// The file; `None` for standard output.
     file: Option<PathBuf>,
 }
 
-impl Table {
+impl TableWriter {
     /// Creates `file`, which must not exist yet; uses standard output for `None`.
     ///
     /// # Errors

@@ -10,7 +10,7 @@ use mdle_runtime::trace::Seconds;
 use mdle_runtime::{Examined, Nanometers, Nanos};
 use serde_json::json;
 
-use super::export::Table;
+use super::export::TableWriter;
 use crate::examined::{ExaminedRun, ExaminedTurn, Moment};
 use crate::failure::Failure;
 use crate::replay::{self, WantedPlan};
@@ -26,7 +26,7 @@ pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Re
     let call = format!("mdle log export --script {}", log.display());
     let wanted = WantedPlan { log, file: plan, begin: &begin, call: &call, has_run: true };
     let mut run = ExaminedRun::of(&wanted, record)?;
-    let mut table = Table::created(file)?;
+    let mut table = TableWriter::created(file)?;
     let mut way = Nanometers(0);
     while let Some(turn) = run.turn() {
         let turn = match turn {

@@ -11,7 +11,7 @@ use mdle_files::{NamedProcess, Settings};
 use mdle_host::Microphones;
 use mdle_runtime::Sensed;
 
-use crate::arguments::Run;
+use crate::arguments::RunArguments;
 use crate::failure::Failure;
 pub(crate) use audio::AudioSource;
 use ears::EarsModule;
@@ -31,8 +31,12 @@ pub(crate) fn shipped(library: &mut Library<Sensed>) {
 ///
 /// # Errors
 /// Fails if a name in the `mdle.toml` is not a module name, or is already taken.
-pub(crate) fn of_settings(settings: &Settings, arguments: &Run, library: &mut Library<Sensed>) -> Result<(), Failure> {
-    let Run { modules, point, .. } = arguments;
+pub(crate) fn of_settings(
+    settings: &Settings,
+    arguments: &RunArguments,
+    library: &mut Library<Sensed>,
+) -> Result<(), Failure> {
+    let RunArguments { modules, point, .. } = arguments;
     for NamedProcess { place, name, command } in only_of_settings(settings, arguments) {
         library.admits(name).map_err(|refusal| Failure::Usage(format!("{place}: {refusal}")))?;
         library.process(name, command);
@@ -47,8 +51,11 @@ pub(crate) fn of_settings(settings: &Settings, arguments: &Run, library: &mut Li
 }
 
 /// Returns the modules that the `mdle.toml` names and no option replaces.
-pub(crate) fn only_of_settings<'s>(settings: &'s Settings, arguments: &Run) -> impl Iterator<Item = NamedProcess<'s>> {
-    let Run { modules, point, ears, .. } = arguments;
+pub(crate) fn only_of_settings<'s>(
+    settings: &'s Settings,
+    arguments: &RunArguments,
+) -> impl Iterator<Item = NamedProcess<'s>> {
+    let RunArguments { modules, point, ears, .. } = arguments;
     let is_replaced = move |name: &str| {
         modules.iter().any(|(other, _)| other == name) || (point.is_some() || ears.is_some()) && name == HEADING
     };

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use mdle_host::{Program, Quantity, determining, is_record, output_format, quoted};
 
-use crate::arguments::Run;
+use crate::arguments::RunArguments;
 use crate::failure::Failure;
 
 /// Name of the command if no executable contains the scenario.
@@ -14,7 +14,7 @@ const MDLE: &str = "mdle run SCENARIO.toml";
 
 /// The options of a scenario.
 #[derive(Debug, Default)]
-pub(super) struct Options {
+pub(super) struct ScenarioOptions {
     pub(super) seed: Option<u64>,
     pub(super) timeout: Option<Duration>,
     /// File of the log. If its name is the name of a record, the names of the robots' records are derived from it.
@@ -33,14 +33,14 @@ pub(super) struct Options {
     pub(super) threads: Option<usize>,
 }
 
-impl Options {
+impl ScenarioOptions {
     /// Reads the options of a scenario. `program` is the executable that contains the scenario; `None` if `mdle` reads
     /// it from a file.
     ///
     /// # Errors
     /// Fails if an option is unknown, has a wrong value, or applies only to a single plan, or if the options ask for
     /// help.
-    pub(super) fn read(run: &Run, program: Option<Program<'_>>) -> Result<Self, Failure> {
+    pub(super) fn read(run: &RunArguments, program: Option<Program<'_>>) -> Result<Self, Failure> {
         let of_a_plan = [
             (run.target.is_some(), "--target"),
             (run.plan.is_some(), "--plan"),

@@ -9,9 +9,9 @@ use std::process::ExitCode;
 use mdle_engine::Library;
 use mdle_host::Program;
 
-use super::arguments::Options;
+use super::arguments::ScenarioOptions;
 use super::files::Files;
-use super::{Ready, run_with};
+use super::{ReadyPlan, run_with};
 use crate::arguments::{Asked, parse};
 use crate::failure::Failure;
 use crate::modules;
@@ -28,11 +28,11 @@ pub fn scenario_files(path: &Path) -> Result<Vec<(String, Vec<u8>)>, u8> {
 
 fn read(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let files = Files::of_system(path);
-    Ready::read(&files, &Options::default())?;
+    ReadyPlan::read(&files, &ScenarioOptions::default())?;
     let contents = files.into_contents();
     // Checks that the scenario can be read from the copies alone, which are looked up by name, without resolving links
     // and folders.
-    Ready::read(&Files::inside(path, contents.clone()), &Options::default())?;
+    ReadyPlan::read(&Files::inside(path, contents.clone()), &ScenarioOptions::default())?;
     let is_other = |(file, _): &(PathBuf, _)| file != path;
     let (mut others, mut own): (Vec<_>, Vec<_>) = contents.into_iter().partition(is_other);
     own.append(&mut others);
@@ -58,7 +58,7 @@ fn run(program: Program<'_>, files: &[(&str, &[u8])]) -> Result<ExitCode, Failur
     // Records contain this command, which repeats the run from the scenario's file.
     let words = ["mdle", "run", path].map(OsString::from).into_iter().chain(std::env::args_os().skip(1));
     let Asked::Run(arguments) = parse(words.collect())? else { return Ok(ExitCode::SUCCESS) };
-    let options = Options::read(&arguments, Some(program))?;
+    let options = ScenarioOptions::read(&arguments, Some(program))?;
     let contents: BTreeMap<_, _> = files.iter().map(|(file, bytes)| (PathBuf::from(file), bytes.to_vec())).collect();
     let mut library = Library::new();
     modules::shipped(&mut library);

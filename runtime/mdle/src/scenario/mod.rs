@@ -24,9 +24,9 @@ use mdle_engine::Library;
 use mdle_host::Interruption;
 use mdle_runtime::{Printable, Sensed};
 
-use crate::arguments::Run;
+use crate::arguments::RunArguments;
 use crate::failure::{self, Failure};
-use arguments::Options;
+use arguments::ScenarioOptions;
 use crowd::CrowdSetup;
 pub use embedded::{run_scenario, scenario_files};
 use file::ScenarioError;
@@ -48,28 +48,28 @@ pub fn is_scenario(file: &Path) -> bool {
 ///
 /// # Errors
 /// Fails if the scenario cannot be run.
-pub(crate) fn run(arguments: &Run, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
-    let options = Options::read(arguments, None)?;
+pub(crate) fn run(arguments: &RunArguments, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
+    let options = ScenarioOptions::read(arguments, None)?;
     run_with(&options, &Files::of_system(&arguments.file), library)
 }
 
 /// Runs the scenario in these files.
-fn run_with(options: &Options, files: &Files, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
-    match Ready::read(files, options)? {
-        Ready::Crowd(crowd) => crowd::run(crowd, options),
-        Ready::Robots(scenario) => run_robots(*scenario, options, library),
+fn run_with(options: &ScenarioOptions, files: &Files, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
+    match ReadyPlan::read(files, options)? {
+        ReadyPlan::Crowd(crowd) => crowd::run(crowd, options),
+        ReadyPlan::Robots(scenario) => run_robots(*scenario, options, library),
     }
 }
 
 /// A scenario that is ready to run.
-enum Ready {
+enum ReadyPlan {
     Crowd(CrowdSetup),
     Robots(Box<Scenario>),
 }
 
-impl Ready {
+impl ReadyPlan {
     /// Reads the scenario in these files, for a run with these options. Messages go to standard error.
-    fn read(files: &Files, options: &Options) -> Result<Self, Failure> {
+    fn read(files: &Files, options: &ScenarioOptions) -> Result<Self, Failure> {
         let path = &files.path;
         let text = files.text(path, file::LARGEST);
         let text = text.map_err(|error| Failure::Usage(format!("{} cannot be read: {error}", path.display())))?;
@@ -88,7 +88,7 @@ impl Ready {
 }
 
 /// Runs the robots of a scenario.
-fn run_robots(scenario: Scenario, options: &Options, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
+fn run_robots(scenario: Scenario, options: &ScenarioOptions, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     if options.recorded_paths.is_some() && scenario.members.iter().all(|member| member.records.is_none()) {
         let help = "name a path that the plan replays, as in `records = \"NAME\"`, or leave the option out";
         return Err(Failure::Usage(format!("--recorded-paths: no robot of the scenario records a path\nhelp: {help}")));

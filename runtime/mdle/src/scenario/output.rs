@@ -9,7 +9,7 @@ use mdle_runtime::trace::{Json, Seconds};
 use mdle_runtime::{Nanos, Printable, Sensed};
 use mdle_sim::{FleetDrawing, TripDrawing};
 
-use super::arguments::Options;
+use super::arguments::ScenarioOptions;
 use super::member::{MemberTurn, Runner, Standing};
 use super::records::{Records, unwritten};
 use super::setup::Scenario;
@@ -49,7 +49,7 @@ impl Output {
     ///
     /// # Errors
     /// Fails with a message if a file cannot be written.
-    pub(super) fn open(options: &Options, scenario: &Scenario) -> Result<Self, String> {
+    pub(super) fn open(options: &ScenarioOptions, scenario: &Scenario) -> Result<Self, String> {
         let table = |path: &Option<PathBuf>| path.as_deref().map(Table::create).transpose();
         let title = setup(scenario);
         let record = options.log.as_deref().filter(|log| is_record(log));

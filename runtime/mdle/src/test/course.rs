@@ -10,7 +10,7 @@ pub(super) struct Course {
     /// The atoms that began, each recorded when its law was first applied.
     pub(super) began: Vec<Began>,
     /// All transitions.
-    pub(super) steps: Vec<Step>,
+    pub(super) steps: Vec<CourseTransition>,
     /// Number of turns.
     pub(super) turns: u64,
     /// Time of the last turn.
@@ -33,7 +33,7 @@ pub(super) struct Began {
 
 /// A transition.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Step {
+pub(super) struct CourseTransition {
     pub(super) turn: u64,
     pub(super) t: Nanos,
     /// Number of the atom that was left.
@@ -111,7 +111,7 @@ impl<'m> Recorder<'m> {
         let first = self.machine.root().first().number();
         let mut from = self.atom.or(Some(first));
         for (transition, operands) in transitions.iter() {
-            self.course.steps.push(Step {
+            self.course.steps.push(CourseTransition {
                 turn,
                 t,
                 from,
@@ -146,7 +146,7 @@ impl<'m> Recorder<'m> {
 
 impl Course {
     /// Returns the transition that ended the plan; `None` if the plan was not over.
-    pub(super) fn last(&self) -> Option<&Step> {
+    pub(super) fn last(&self) -> Option<&CourseTransition> {
         self.steps.last().filter(|step| step.to.is_none())
     }
 }

@@ -18,25 +18,25 @@ const LONGEST: Duration = Duration::from_secs(1_000_000_000);
 const FURTHEST: f64 = 1000.0;
 
 /// Byte range of an expectation in the test file.
-pub(super) type Place = Range<usize>;
+pub(super) type TextRange = Range<usize>;
 
 /// The expectations of a test.
 pub(super) struct Expected {
-    pub(super) atoms: Option<(Place, Vec<AtomsNamed>)>,
-    pub(super) order: Option<(Place, Vec<AtomsNamed>)>,
-    pub(super) transitions: Vec<(Place, ExpectedTransition)>,
-    pub(super) never: Vec<(Place, Never)>,
-    pub(super) end: Option<(Place, End)>,
-    pub(super) pose: Option<(Place, String, Goal)>,
-    pub(super) most_turns: Option<(Place, u64)>,
-    pub(super) most_transitions: Option<(Place, u64)>,
-    pub(super) most_time: Option<(Place, Nanos)>,
+    pub(super) atoms: Option<(TextRange, Vec<AtomsNamed>)>,
+    pub(super) order: Option<(TextRange, Vec<AtomsNamed>)>,
+    pub(super) transitions: Vec<(TextRange, ExpectedTransition)>,
+    pub(super) never: Vec<(TextRange, Never)>,
+    pub(super) end: Option<(TextRange, ExpectedEnd)>,
+    pub(super) pose: Option<(TextRange, String, Goal)>,
+    pub(super) most_turns: Option<(TextRange, u64)>,
+    pub(super) most_transitions: Option<(TextRange, u64)>,
+    pub(super) most_time: Option<(TextRange, Nanos)>,
 }
 
 /// Atoms that a text names.
 #[derive(Clone)]
 pub(super) struct AtomsNamed {
-    pub(super) place: Place,
+    pub(super) place: TextRange,
     pub(super) text: String,
     /// For each atom, `true` if it is named.
     atoms: Vec<bool>,
@@ -63,7 +63,7 @@ pub(super) enum Never {
 }
 
 /// The expected end of a run.
-pub(super) enum End {
+pub(super) enum ExpectedEnd {
     /// The plan is over by this cause.
     By(String, Cause),
     /// The plan is not over.
@@ -187,11 +187,11 @@ fn transition(at: &At<TransitionText>, subject: &Subject) -> Result<ExpectedTran
     Ok(ExpectedTransition { from, to: to.transpose()?, by, after, within })
 }
 
-fn end(text: &At<String>, subject: &Subject) -> Result<End, TestFileError> {
+fn end(text: &At<String>, subject: &Subject) -> Result<ExpectedEnd, TestFileError> {
     Ok(match text.get_ref().trim() {
-        "running" => End::Running,
-        "failed" => End::Failed,
-        words => End::By(words.to_owned(), ending(text, cause(text, subject)?, subject)?),
+        "running" => ExpectedEnd::Running,
+        "failed" => ExpectedEnd::Failed,
+        words => ExpectedEnd::By(words.to_owned(), ending(text, cause(text, subject)?, subject)?),
     })
 }
 

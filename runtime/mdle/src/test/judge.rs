@@ -5,15 +5,15 @@ use mdle_runtime::trace::Seconds;
 use mdle_runtime::{Nanos, Pose, Words};
 
 use super::causes::Cause;
-use super::course::{Course, Ending, Step, atom_words};
-use super::expected::{AtomsNamed, End, Expected, ExpectedTransition, Never, Place};
+use super::course::{Course, CourseTransition, Ending, atom_words};
+use super::expected::{AtomsNamed, Expected, ExpectedEnd, ExpectedTransition, Never, TextRange};
 use super::subject::Subject;
 
 /// An expectation that a run has not met.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Failure {
     /// Place of the expectation in the test file.
-    pub(super) place: Place,
+    pub(super) place: TextRange,
     /// Message about the run.
     pub(super) message: String,
     /// Text shown at the place of the expectation.
@@ -48,7 +48,7 @@ struct Judge<'j> {
 }
 
 impl Judge<'_> {
-    fn failure(&self, place: &Place, message: String, expected: String, got: String) -> Failure {
+    fn failure(&self, place: &TextRange, message: String, expected: String, got: String) -> Failure {
         Failure { place: place.clone(), message, expected, got, atom: self.last_atom(), t: self.course.t }
     }
 
@@ -66,15 +66,15 @@ impl Judge<'_> {
     fn fault(&self, expected: &Expected) -> Option<Failure> {
         let Ending::Failed(fault) = &self.course.ending else { return None };
         let place = match &expected.end {
-            Some((_, End::Failed)) => return None,
-            Some((place, End::By(..) | End::Running)) => place.clone(),
+            Some((_, ExpectedEnd::Failed)) => return None,
+            Some((place, ExpectedEnd::By(..) | ExpectedEnd::Running)) => place.clone(),
             None => 0..0,
         };
         let words = "the run was to go on without a fault".to_owned();
         Some(self.failure(&place, format!("a fault ended the run: {fault}"), words, fault.clone()))
     }
 
-    fn atoms(&self, place: &Place, atoms: &[AtomsNamed]) -> Option<Failure> {
+    fn atoms(&self, place: &TextRange, atoms: &[AtomsNamed]) -> Option<Failure> {
         let began = &self.course.began;
         let differs =
             (0..atoms.len().max(began.len())).find(|number| match (atoms.get(*number), began.get(*number)) {
@@ -105,7 +105,7 @@ impl Judge<'_> {
         })
     }
 
-    fn order(&self, _: &Place, atoms: &[AtomsNamed]) -> Option<Failure> {
+    fn order(&self, _: &TextRange, atoms: &[AtomsNamed]) -> Option<Failure> {
         let mut began = self.course.began.iter();
         let mut last: Option<(&AtomsNamed, Nanos)> = None;
         for named in atoms {
@@ -136,18 +136,18 @@ impl Judge<'_> {
         if shown.is_empty() { "nothing began".to_owned() } else { format!("{} began", shown.join(", ")) }
     }
 
-    fn transition(&self, place: &Place, wanted: &ExpectedTransition) -> Option<Failure> {
+    fn transition(&self, place: &TextRange, wanted: &ExpectedTransition) -> Option<Failure> {
         let is_named = |named: &Option<AtomsNamed>, atom: Option<u32>| {
             named.as_ref().is_none_or(|named| atom.is_some_and(|atom| named.holds(atom)))
         };
-        let is_to = |step: &Step| match &wanted.to {
+        let is_to = |step: &CourseTransition| match &wanted.to {
             None => true,
             Some(None) => step.to.is_none(),
             Some(named) => is_named(named, step.to),
         };
-        let is_by = |step: &Step| wanted.by.as_ref().is_none_or(|(_, cause)| self.is_by(step, cause));
-        let fits = |step: &&Step| is_named(&wanted.from, step.from) && is_to(step) && is_by(step);
-        let is_in_time = |step: &&Step| {
+        let is_by = |step: &CourseTransition| wanted.by.as_ref().is_none_or(|(_, cause)| self.is_by(step, cause));
+        let fits = |step: &&CourseTransition| is_named(&wanted.from, step.from) && is_to(step) && is_by(step);
+        let is_in_time = |step: &&CourseTransition| {
             wanted.after.is_none_or(|after| step.t >= after) && wanted.within.is_none_or(|within| step.t <= within)
         };
         let candidates: Vec<_> = self.course.steps.iter().filter(fits).collect();
@@ -171,19 +171,19 @@ impl Judge<'_> {
 
     /// Returns the transition that meets the largest number of `conditions`, the first if there are several; `None` if
     /// there were no transitions.
-    fn nearest(&self, conditions: &[&dyn Fn(&Step) -> bool]) -> Option<&Step> {
-        let met = |step: &Step| conditions.iter().filter(|condition| condition(step)).count();
+    fn nearest(&self, conditions: &[&dyn Fn(&CourseTransition) -> bool]) -> Option<&CourseTransition> {
+        let met = |step: &CourseTransition| conditions.iter().filter(|condition| condition(step)).count();
         let most = self.course.steps.iter().map(met).max()?;
         self.course.steps.iter().find(|step| met(step) == most)
     }
 
     /// Returns a transition in words.
-    fn step_words(&self, step: &Step) -> String {
+    fn step_words(&self, step: &CourseTransition) -> String {
         let [from, to] = [step.from, step.to].map(|atom| atom_words(self.machine, self.words, atom));
         format!("the nearest was from {from} to {to} at {} s by {}", Seconds(step.t), step.words)
     }
 
-    fn is_by(&self, step: &Step, cause: &Cause) -> bool {
+    fn is_by(&self, step: &CourseTransition, cause: &Cause) -> bool {
         match cause {
             Cause::Completed => step.has_completed,
             Cause::Operands(operands) => operands
@@ -211,21 +211,21 @@ impl Judge<'_> {
         failures.collect()
     }
 
-    fn end(&self, place: &Place, end: &End) -> Option<Failure> {
+    fn end(&self, place: &TextRange, end: &ExpectedEnd) -> Option<Failure> {
         let last = self.course.last();
         let is_met = match end {
-            End::By(_, cause) => last.is_some_and(|step| self.is_by(step, cause)),
-            End::Running => self.course.ending == Ending::Running,
-            End::Failed => matches!(self.course.ending, Ending::Failed(_)),
+            ExpectedEnd::By(_, cause) => last.is_some_and(|step| self.is_by(step, cause)),
+            ExpectedEnd::Running => self.course.ending == Ending::Running,
+            ExpectedEnd::Failed => matches!(self.course.ending, Ending::Failed(_)),
         };
         // A fault is reported as a separate failure.
-        if is_met || (matches!(self.course.ending, Ending::Failed(_)) && !matches!(end, End::Failed)) {
+        if is_met || (matches!(self.course.ending, Ending::Failed(_)) && !matches!(end, ExpectedEnd::Failed)) {
             return None;
         }
         let expected = match end {
-            End::By(text, _) => format!("the plan was to end by `{text}`"),
-            End::Running => "the plan was to go on".to_owned(),
-            End::Failed => "a fault was to end the run".to_owned(),
+            ExpectedEnd::By(text, _) => format!("the plan was to end by `{text}`"),
+            ExpectedEnd::Running => "the plan was to go on".to_owned(),
+            ExpectedEnd::Failed => "a fault was to end the run".to_owned(),
         };
         let got = match last {
             Some(step) => format!("it ended at {} s by {}", Seconds(step.t), step.words),

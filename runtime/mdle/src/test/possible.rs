@@ -8,7 +8,7 @@ use mdle_compiler::plan::Condition;
 use mdle_runtime::trace::COMPLETED;
 
 use super::causes::Cause;
-use super::expected::{AtomsNamed, Expected, ExpectedTransition, Place};
+use super::expected::{AtomsNamed, Expected, ExpectedTransition, TextRange};
 use super::file::TestFileError;
 use super::subject::Subject;
 
@@ -41,7 +41,7 @@ fn in_order(atoms: &[AtomsNamed], subject: &Subject) -> Result<(), TestFileError
 }
 
 /// Checks that the plan can make a transition.
-fn can_be_made(wanted: &ExpectedTransition, place: Place, subject: &Subject) -> Result<(), TestFileError> {
+fn can_be_made(wanted: &ExpectedTransition, place: TextRange, subject: &Subject) -> Result<(), TestFileError> {
     let possible = PossibleTransitions::new(subject.machine());
     let is_from = |atom| wanted.from.as_ref().is_none_or(|from| from.holds(atom));
     let entered = possible.entered(is_from, wanted.by.as_ref().map(|(_, cause)| cause));

@@ -10,7 +10,7 @@ use mdle_host::quoted;
 use mdle_runtime::PrintableLines;
 use mdle_runtime::trace::Seconds;
 
-use super::course::{Course, Ending, Step, atom_words};
+use super::course::{Course, CourseTransition, Ending, atom_words};
 use super::judge::Failure;
 use super::runner::{Job, Made, RunResult};
 use super::suite::{Case, RunsOn, Suite};
@@ -197,7 +197,7 @@ fn transitions(test: &Tested<'_>, course: &Course, failure: &Failure) -> String 
     let (machine, words) = (test.suite.subject.machine(), &test.suite.subject.words);
     let until = course.steps.partition_point(|step| step.t <= failure.t);
     let first = until.saturating_sub(STEPS);
-    let line = |Step { t, to, words: by, .. }: &Step| {
+    let line = |CourseTransition { t, to, words: by, .. }: &CourseTransition| {
         format!("\n  {:>7} s  {}  <- {by}", Seconds(*t).to_string(), atom_words(machine, words, *to))
     };
     let lines: String = course.steps.get(first..until).unwrap_or_default().iter().map(line).collect();

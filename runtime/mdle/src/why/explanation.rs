@@ -39,7 +39,7 @@ pub(crate) struct Ended {
 
 /// The atom whose law was applied.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Runs {
+pub(crate) struct AppliedAtom {
     /// The atom.
     pub(crate) atom: AtomWords,
     /// Time since the atom was entered, without the time during which other plans were active.
@@ -77,7 +77,7 @@ pub(crate) struct Explanation {
     /// The transitions of the turn.
     pub(crate) ended: Vec<Ended>,
     /// The atom whose law was applied; `None` if the plan is over.
-    pub(crate) runs: Option<Runs>,
+    pub(crate) runs: Option<AppliedAtom>,
     /// Reason why the null input was sent instead of a law's input; `None` if a law was applied, or the plan is
     /// over.
     pub(crate) cut: Option<&'static str>,
@@ -90,7 +90,7 @@ pub(crate) struct Explanation {
 }
 
 /// A transition with its cause, its values and its place.
-pub(crate) struct Step {
+pub(crate) struct ExplainedTransition {
     pub(crate) transition: Transition,
     pub(crate) cause: String,
 }
@@ -207,8 +207,8 @@ impl Explainer {
     }
 
     /// Returns the transitions of a turn and their causes.
-    pub(crate) fn each(turn: &ExaminedTurn, plan: &dyn Texts) -> Vec<Step> {
-        let step = |(transition, operands): (&Transition, &[Operand])| Step {
+    pub(crate) fn each(turn: &ExaminedTurn, plan: &dyn Texts) -> Vec<ExplainedTransition> {
+        let step = |(transition, operands): (&Transition, &[Operand])| ExplainedTransition {
             transition: *transition,
             cause: CauseText { plan, transition, operands }.to_string(),
         };
@@ -254,7 +254,7 @@ impl Explainer {
                 ended.push(self.end(turn, plan, (transition, operands), moment));
             }
             if let Some(moment) = moments.next() {
-                runs = Some(Runs {
+                runs = Some(AppliedAtom {
                     atom: self.atom(texts, moment.atom),
                     since: moment.scopes.last().map_or(Nanos::ZERO, |own| own.since),
                     paused: self.course().paused,

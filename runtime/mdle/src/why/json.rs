@@ -3,10 +3,10 @@
 use mdle_runtime::{Measured, Nanos, Twist};
 use serde_json::{Value, json};
 
-use super::explanation::{AtomWords, Ended, Explanation, Replaced, Runs};
+use super::explanation::{AppliedAtom, AtomWords, Ended, Explanation, Replaced};
 use super::never::{Beginnings, Chance, Never, Skips, Stay, Turned};
-use super::operands::Operand;
-use super::scopes::{Part, Scope};
+use super::operands::MeasuredOperand;
+use super::scopes::{Scope, ScopeRole};
 use super::{Answer, Next};
 
 /// Returns an answer as a JSON object.
@@ -43,8 +43,8 @@ fn end(ended: &Ended) -> Value {
     })
 }
 
-fn run(runs: &Runs, t: Nanos) -> Value {
-    let Runs { atom, since, paused, began, completes, scopes } = runs;
+fn run(runs: &AppliedAtom, t: Nanos) -> Value {
+    let AppliedAtom { atom, since, paused, began, completes, scopes } = runs;
     json!({
         "atom": words(atom),
         "since": t.since(*since).since(*paused).seconds(),
@@ -62,12 +62,12 @@ fn words(atom: &AtomWords) -> Value {
 fn scope(scope: &Scope) -> Value {
     let Scope { name, is_atom, line, condition, since, part, examination, leads_to } = scope;
     let part = match part {
-        Part::Ended => "ended",
-        Part::Completed => "completed",
-        Part::Shadowed => "shadowed",
-        Part::Waits => "waits",
-        Part::NoInterrupt => "no interrupt",
-        Part::Removed => "removed",
+        ScopeRole::Ended => "ended",
+        ScopeRole::Completed => "completed",
+        ScopeRole::Shadowed => "shadowed",
+        ScopeRole::Waits => "waits",
+        ScopeRole::NoInterrupt => "no interrupt",
+        ScopeRole::Removed => "removed",
     };
     json!({
         "name": name,
@@ -83,8 +83,8 @@ fn scope(scope: &Scope) -> Value {
     })
 }
 
-fn operand(operand: &Operand) -> Value {
-    let Operand { written, words, fired, decided, suffices, measured, lack, stale, inside } = operand;
+fn operand(operand: &MeasuredOperand) -> Value {
+    let MeasuredOperand { written, words, fired, decided, suffices, measured, lack, stale, inside } = operand;
     json!({
         "operand": written,
         "words": words,

@@ -18,7 +18,7 @@ const STALE: Nanos = Nanos(1_000_000_000);
 
 /// An operand of a condition in a turn.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Operand {
+pub(crate) struct MeasuredOperand {
     /// The operand as written.
     pub(crate) written: String,
     /// The operand with its values.
@@ -36,7 +36,7 @@ pub(crate) struct Operand {
     /// Remarks about stale data; empty if there are none.
     pub(crate) stale: Vec<String>,
     /// The parts of an operand that is a NOT or RISING of several conditions.
-    pub(crate) inside: Vec<Operand>,
+    pub(crate) inside: Vec<MeasuredOperand>,
 }
 
 /// The facts of a turn that operands need in addition to their own values.
@@ -56,7 +56,7 @@ pub(crate) struct Examination {
     /// `true` if the condition has fired.
     pub(crate) fired: bool,
     /// The parts that AND and OR join, in order.
-    pub(crate) operands: Vec<Operand>,
+    pub(crate) operands: Vec<MeasuredOperand>,
     /// The operands that have not fired, joined as in the condition; empty if the condition has fired, or has only one
     /// operand.
     pub(crate) missing: String,
@@ -175,7 +175,13 @@ struct Explaining<'e> {
 impl Explaining<'_> {
     /// Explains an operand. `turns` is `true` if inverting this operand alone would invert the condition; `must_end` is
     /// `true` if the operand is a part of a NOT that has not fired.
-    fn operand(&self, node: &Node<'_>, words: Option<&OperandWords<'_>>, turns: bool, must_end: bool) -> Operand {
+    fn operand(
+        &self,
+        node: &Node<'_>,
+        words: Option<&OperandWords<'_>>,
+        turns: bool,
+        must_end: bool,
+    ) -> MeasuredOperand {
         let Examined { fired, measured } = node.part;
         let is_about_another = matches!(node.condition, Condition::Not(_) | Condition::Rising { .. });
         let inner = node.parts.first().filter(|_| is_about_another);
@@ -207,7 +213,7 @@ impl Explaining<'_> {
         };
         let stale = self.stale(node.condition);
         let (decided, suffices) = (turns && fired, turns && !fired);
-        Operand { written, words: shown, fired, decided, suffices, measured, lack, stale, inside }
+        MeasuredOperand { written, words: shown, fired, decided, suffices, measured, lack, stale, inside }
     }
 
     /// Returns remarks about the sonars that a condition reads and that have not pinged for a long time.

@@ -7,7 +7,7 @@ use crate::examined::{ExaminedPlan, Moment, ScopeMoment};
 
 /// Role of a scope at a moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Part {
+pub(crate) enum ScopeRole {
     /// The scope's interrupt has fired and ended it.
     Ended,
     /// The scope is an atom whose law has completed, which ended it.
@@ -36,7 +36,7 @@ pub(crate) struct Scope {
     /// Time since the scope was entered.
     pub(crate) since: Nanos,
     /// Role of the scope at the moment.
-    pub(crate) part: Part,
+    pub(crate) part: ScopeRole,
     /// Examination of the scope's condition.
     pub(crate) examination: Examination,
     /// The law of the atom that would follow; `None` if the plan would be over.
@@ -57,14 +57,14 @@ fn scope(plan: &ExaminedPlan, moment: &Moment, scope: &ScopeMoment, facts: &Fact
     let is_removed = element.interrupt().is_some_and(|interrupt| interrupt.removed);
     let is_cause = moment.cause.is_some_and(|cause| cause.level() == scope.level);
     let part = match moment.cause {
-        Some(Cause::Completed(_)) if is_cause => Part::Completed,
-        Some(Cause::Fired(_)) if is_cause => Part::Ended,
-        _ if is_removed => Part::Removed,
-        _ if examination.operands.is_empty() => Part::NoInterrupt,
-        Some(_) if examination.fired => Part::Shadowed,
-        Some(_) | None => Part::Waits,
+        Some(Cause::Completed(_)) if is_cause => ScopeRole::Completed,
+        Some(Cause::Fired(_)) if is_cause => ScopeRole::Ended,
+        _ if is_removed => ScopeRole::Removed,
+        _ if examination.operands.is_empty() => ScopeRole::NoInterrupt,
+        Some(_) if examination.fired => ScopeRole::Shadowed,
+        Some(_) | None => ScopeRole::Waits,
     };
-    if part != Part::Ended {
+    if part != ScopeRole::Ended {
         examination.operands.iter_mut().for_each(|operand| operand.decided = false);
     }
     let removed = element.interrupt().filter(|_| is_removed).map(|interrupt| interrupt.text.clone());

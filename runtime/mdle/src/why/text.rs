@@ -5,9 +5,9 @@ use std::fmt::Write as _;
 use mdle_host::{Clocked, rounded};
 use mdle_runtime::{Nanos, Twist};
 
-use super::explanation::{AtomWords, Ended, Explanation, Replaced, Runs};
-use super::operands::Operand;
-use super::scopes::{Part, Scope};
+use super::explanation::{AppliedAtom, AtomWords, Ended, Explanation, Replaced};
+use super::operands::MeasuredOperand;
+use super::scopes::{Scope, ScopeRole};
 use super::{Answer, Next};
 
 /// Returns the text of an answer.
@@ -57,8 +57,8 @@ fn end(text: &mut String, ended: &Ended) {
 }
 
 /// Writes the atom that ran, and the conditions of the scopes that enclose it.
-fn run(text: &mut String, runs: &Runs, t: Nanos) {
-    let Runs { atom, since, paused, began, completes, scopes } = runs;
+fn run(text: &mut String, runs: &AppliedAtom, t: Nanos) {
+    let AppliedAtom { atom, since, paused, began, completes, scopes } = runs;
     let _ = write!(text, "\n{} ran", named(atom));
     let began = if began.is_empty() { "the start of the plan" } else { began };
     let entered = Clocked(t.since(*since).since(*paused));
@@ -85,21 +85,23 @@ pub(super) fn scope(text: &mut String, scope: &Scope) {
         let _ = write!(text, ": {condition}");
     }
     let _ = match part {
-        Part::Ended => writeln!(text, "  -> ended"),
-        Part::Completed => writeln!(text, "  -> ended: its law was done"),
-        Part::Shadowed => writeln!(text, "  -> had fired as well, but an enclosing scope ended first"),
-        Part::Waits => writeln!(text),
-        Part::NoInterrupt => writeln!(text, ": no interrupt"),
-        Part::Removed => writeln!(text, ": {condition}, removed, because an enclosing scope has the same interrupt"),
+        ScopeRole::Ended => writeln!(text, "  -> ended"),
+        ScopeRole::Completed => writeln!(text, "  -> ended: its law was done"),
+        ScopeRole::Shadowed => writeln!(text, "  -> had fired as well, but an enclosing scope ended first"),
+        ScopeRole::Waits => writeln!(text),
+        ScopeRole::NoInterrupt => writeln!(text, ": no interrupt"),
+        ScopeRole::Removed => {
+            writeln!(text, ": {condition}, removed, because an enclosing scope has the same interrupt")
+        }
     };
-    if *part == Part::Removed {
+    if *part == ScopeRole::Removed {
         return;
     }
     let fired = operands.iter().filter(|operand| operand.fired).count();
     let is_any = operands.iter().all(|operand| operand.suffices);
     let marks = operands.len() > 1 && (examination.fired || !is_any);
     operands.iter().for_each(|shown| operand(text, shown, 4, marks));
-    if *part == Part::Ended && fired > 1 && !operands.iter().any(|operand| operand.decided) {
+    if *part == ScopeRole::Ended && fired > 1 && !operands.iter().any(|operand| operand.decided) {
         *text += "    none of them decided alone\n";
     }
     if !examination.missing.is_empty() && !is_any {
@@ -108,8 +110,8 @@ pub(super) fn scope(text: &mut String, scope: &Scope) {
 }
 
 /// Writes an operand; marks the deciding operand if `marks` is `true`.
-fn operand(text: &mut String, operand: &Operand, indent: usize, marks: bool) {
-    let Operand { words, fired, decided, suffices, lack, stale, inside, .. } = operand;
+fn operand(text: &mut String, operand: &MeasuredOperand, indent: usize, marks: bool) {
+    let MeasuredOperand { words, fired, decided, suffices, lack, stale, inside, .. } = operand;
     let _ = write!(text, "{:indent$}{}  {words}", "", if *fired { "yes" } else { "no " });
     if !lack.is_empty() {
         let _ = write!(text, ": {lack}");

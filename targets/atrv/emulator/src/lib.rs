@@ -6,7 +6,7 @@ pub mod wire;
 
 use std::process::ExitCode;
 
-use mdle_emulator::{Options, program};
+use mdle_emulator::{EmulatorOptions, program};
 use mdle_host::clap::{Arg, ArgAction, Command};
 use mdle_simulator::Body;
 
@@ -17,7 +17,7 @@ pub fn main() -> ExitCode {
     let about = "Emulate an iRobot ATRV-mini on a pseudo-terminal, in a simulated world";
     let marks = Arg::new("marks").long("marks").action(ArgAction::SetTrue);
     let marks = marks.help("Accept escaped 1B bytes in commands; without this option such a command is lost");
-    let matches = Options::arguments(Command::new("atrv-emulator").about(about)).arg(marks).get_matches();
+    let matches = EmulatorOptions::arguments(Command::new("atrv-emulator").about(about)).arg(marks).get_matches();
     let marks = matches.get_flag("marks");
-    program("the ATRV", Body::Atrv, &Options::of(&matches), step, |body, step| Atrv::new(body, step, marks))
+    program("the ATRV", Body::Atrv, &EmulatorOptions::of(&matches), step, |body, step| Atrv::new(body, step, marks))
 }

@@ -6,7 +6,7 @@ pub mod wire;
 
 use std::process::ExitCode;
 
-use mdle_emulator::{Options, Pace, program};
+use mdle_emulator::{EmulatorOptions, Pace, program};
 use mdle_host::clap::Command;
 use mdle_simulator::Body;
 
@@ -15,6 +15,6 @@ use scout::Scout;
 /// Runs the robot emulator with the arguments of this process until a signal arrives; returns the exit status.
 pub fn main() -> ExitCode {
     let about = "Emulate a Nomadic Super Scout on a pseudo-terminal, in a simulated world";
-    let matches = Options::arguments(Command::new("scout-emulator").about(about)).get_matches();
-    program("the Scout", Body::Scout, &Options::of(&matches), Pace::step, |body, _| Scout::new(body))
+    let matches = EmulatorOptions::arguments(Command::new("scout-emulator").about(about)).get_matches();
+    program("the Scout", Body::Scout, &EmulatorOptions::of(&matches), Pace::step, |body, _| Scout::new(body))
 }

@@ -10,7 +10,7 @@ use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twi
 
 use crate::footprint::{Contact, Footprint};
 use crate::model::Drive;
-use crate::place::Place;
+use crate::place::Point;
 use crate::walls::Walls;
 use contact::{slid, turned};
 use odometry::Odometry;
@@ -150,13 +150,13 @@ impl Body {
             self.odometry.rolled(way, turn);
             return Obstacle::Nothing;
         }
-        let here = Place::of(&self.pose);
-        let straight = Place { x: there.x.0 - here.x, y: there.y.0 - here.y };
+        let here = Point::of(&self.pose);
+        let straight = Point { x: there.x.0 - here.x, y: there.y.0 - here.y };
         let body = turned(&self.footprint(), Radians(turn), walls);
         let turns = body.pose.theta != self.pose.theta || turn == 0.0;
         let turn = if turns { turn } else { 0.0 };
         let slid = slid(&body, straight, walls);
-        let slid = Place { x: body.pose.x.0 - here.x + slid.x, y: body.pose.y.0 - here.y + slid.y };
+        let slid = Point { x: body.pose.x.0 - here.x + slid.x, y: body.pose.y.0 - here.y + slid.y };
         let (sin, cos) = libm::sincos(self.pose.theta.0 + turn / 2.0);
         let forward = slid.x * cos + slid.y * sin;
         match self.drive.slip {

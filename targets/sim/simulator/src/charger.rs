@@ -2,7 +2,7 @@
 
 use mdle_runtime::{Meters, Pose, Radians};
 
-use crate::place::Place;
+use crate::place::Point;
 
 /// Maximum error of the heading of a robot on its charger, to either side.
 const HEADING: Radians = Radians::from_degrees(15.0);
@@ -26,10 +26,10 @@ impl Charger {
     }
 
     /// Returns points on the circle in which the centre of a robot on the charger has to be.
-    pub fn circle(&self) -> impl Iterator<Item = Place> {
+    pub fn circle(&self) -> impl Iterator<Item = Point> {
         let at = self.pose;
         let reach = Meters(self.reach);
-        (0..=24).map(move |corner| Place::of(&at.towards(Radians::from_degrees(f64::from(corner) * 15.0), reach)))
+        (0..=24).map(move |corner| Point::of(&at.towards(Radians::from_degrees(f64::from(corner) * 15.0), reach)))
     }
 }
 

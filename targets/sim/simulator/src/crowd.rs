@@ -1,7 +1,7 @@
 //! Many robots in one world, with a search for robots that are near each other.
 
 use crate::footprint::Footprint;
-use crate::place::Place;
+use crate::place::Point;
 
 /// Minimum side length of a cell, in metres.
 const CELL_LEAST: f64 = 1.0;
@@ -12,7 +12,7 @@ const CELLS_MOST: f64 = 8.0;
 #[derive(Debug, Clone)]
 pub struct Crowd {
     bodies: Vec<Footprint>,
-    least: Place,
+    least: Point,
     /// Side length of a cell, in metres.
     cell: f64,
     columns: usize,
@@ -38,7 +38,7 @@ impl Crowd {
     pub fn of(bodies: Vec<Footprint>) -> Self {
         let bound = |of: fn(&Footprint) -> f64, pick: fn(f64, f64) -> f64| bodies.iter().map(of).reduce(pick);
         let (x, y) = (|body: &Footprint| body.pose.x.0, |body: &Footprint| body.pose.y.0);
-        let least = Place { x: bound(x, f64::min).unwrap_or(0.0), y: bound(y, f64::min).unwrap_or(0.0) };
+        let least = Point { x: bound(x, f64::min).unwrap_or(0.0), y: bound(y, f64::min).unwrap_or(0.0) };
         let (width, height) =
             (bound(x, f64::max).unwrap_or(0.0) - least.x, bound(y, f64::max).unwrap_or(0.0) - least.y);
         let cells = CELLS_MOST * bodies.len().max(1) as f64;
@@ -76,7 +76,7 @@ impl Crowd {
         (self.starts, self.entries) = (starts, entries);
     }
 
-    fn cell_of(&self, at: Place) -> usize {
+    fn cell_of(&self, at: Point) -> usize {
         self.row(at.y) * self.columns + self.column(at.x)
     }
 
@@ -97,7 +97,7 @@ impl Crowd {
 
     /// Calls `take` with the number and the footprint of each robot whose centre is within `reach` metres of `at`. The
     /// order depends only on the footprints.
-    pub fn near(&self, at: Place, reach: f64, mut take: impl FnMut(usize, &Footprint)) {
+    pub fn near(&self, at: Point, reach: f64, mut take: impl FnMut(usize, &Footprint)) {
         let (left, right) = (self.column(at.x - reach), self.column(at.x + reach));
         for row in self.row(at.y - reach)..=self.row(at.y + reach) {
             let first = row * self.columns;

@@ -4,7 +4,7 @@ use mdle_runtime::{Nanos, Pose, Sensed};
 
 use crate::footprint::{Footprint, Form};
 use crate::frames::Frames;
-use crate::place::Place;
+use crate::place::Point;
 use crate::plot;
 use crate::robot::Simulated;
 use crate::trail::Trail;
@@ -46,7 +46,7 @@ impl Drawing {
         self.trail.went(&y.odometry);
         self.trail.sensed(y, t);
         if touches {
-            self.trail.touched(Place::of(&y.odometry), t);
+            self.trail.touched(Point::of(&y.odometry), t);
         }
     }
 
@@ -57,7 +57,7 @@ impl Drawing {
 
     /// Returns the positions of the echoes so far, at most one per square of 4 cm.
     #[must_use]
-    pub fn echoes(&self) -> &[Place] {
+    pub fn echoes(&self) -> &[Point] {
         &self.trail.echoes
     }
 
@@ -111,7 +111,7 @@ mod tests {
     use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, Twist};
 
     use super::*;
-    use crate::model::{Body, Part};
+    use crate::model::{Body, ModelPart};
     use crate::robot::Make;
 
     /// Returns the trail of a robot that drives ahead from the origin at `speed`, in m/s, for `turns` periods,
@@ -138,15 +138,15 @@ mod tests {
         let wall = ahead("[[wall]]\npoints = [[1, -1], [1, 0.1]]", 60);
         let walker = "[[box]]\nsize = [0.4, 4]\nschedule = [[0, 2, 0], [4, 0.2, 0], [8, 2, 0]]\nrepeat = true";
         let moving = ahead(walker, 100);
-        assert_eq!((wall.contacts.len(), wall.contacts[0].0), (1, Place { x: 1.0, y: 0.0 }));
-        let (Place { x, y }, t) = moving.contacts[0];
+        assert_eq!((wall.contacts.len(), wall.contacts[0].0), (1, Point { x: 1.0, y: 0.0 }));
+        let (Point { x, y }, t) = moving.contacts[0];
         assert!((0.4..0.9).contains(&x) && y == 0.0 && (1.0..3.0).contains(&t.seconds()), "{:?}", moving.contacts);
         assert!(moving.things[0].is_some_and(|gone| gone.x < 0.0), "{:?}", moving.things);
     }
 
     #[test]
     fn the_echoes_of_sonars_that_fire_between_turns_are_where_they_were_heard() {
-        let make = Make { body: Body::Scout, without: vec![Part::Steps], seed: None };
+        let make = Make { body: Body::Scout, without: vec![ModelPart::Steps], seed: None };
         let (trail, robot) = ahead("[[wall]]\npoints = [[3, -9], [3, 9]]", &make, 0.4, 5, Duration::from_secs(1));
         // The front sonar hears the wall itself; its neighbours hear points of the wall that are nearer than where
         // their axes meet it.

@@ -3,7 +3,7 @@
 use mdle_runtime::{Nanos, Pose};
 
 use crate::footprint::{Footprint, Form};
-use crate::place::Place;
+use crate::place::Point;
 use crate::plot;
 use crate::robot::Simulated;
 use crate::trail::{Companion, Trail};
@@ -16,7 +16,7 @@ pub struct FleetDrawing {
     title: String,
     robots: Vec<RobotWay>,
     /// Positions and times at which a robot came into contact with an obstacle.
-    contacts: Vec<(Place, Nanos)>,
+    contacts: Vec<(Point, Nanos)>,
 }
 
 /// A robot and the path that it has driven.
@@ -26,7 +26,7 @@ struct RobotWay {
     form: Form,
     start: Pose,
     here: Pose,
-    way: Vec<Place>,
+    way: Vec<Point>,
     until: Nanos,
     touches: bool,
 }
@@ -41,7 +41,7 @@ impl FleetDrawing {
     /// Records the current pose of the robot `name`; `touches` is `true` if the robot touches an obstacle.
     pub fn went(&mut self, name: &str, robot: &Simulated, touches: bool) {
         let Footprint { pose, form } = robot.footprint();
-        let place = Place::of(&pose);
+        let place = Point::of(&pose);
         let number = self.robots.iter().position(|robot| robot.name == name).unwrap_or_else(|| {
             let name = name.to_owned();
             let way = vec![place];

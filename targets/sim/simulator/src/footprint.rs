@@ -9,7 +9,7 @@ use std::fmt;
 use mdle_runtime::{Pose, Radians, Shape};
 
 use crate::grid::Segment;
-use crate::place::Place;
+use crate::place::Point;
 use crate::surfaces::{Surface, apart};
 
 /// Radius of a Scout's body, which is a disc, in metres.
@@ -47,9 +47,9 @@ pub(crate) struct Contact {
     /// Distance between the two points, in metres; negative where body and obstacle overlap.
     pub(crate) gap: f64,
     /// Point on the obstacle.
-    pub(crate) place: Place,
+    pub(crate) place: Point,
     /// Point of the body at which the obstacle pushes the body away; the centre of a disc.
-    pub(crate) body: Place,
+    pub(crate) body: Point,
 }
 
 /// Distance beyond a ray's end at which a body may still be hit, in metres; larger than rounding errors.
@@ -114,8 +114,8 @@ impl fmt::Display for Form {
 impl Footprint {
     /// Returns the position of the centre.
     #[must_use]
-    pub fn at(&self) -> Place {
-        Place::of(&self.pose)
+    pub fn at(&self) -> Point {
+        Point::of(&self.pose)
     }
 
     /// Returns `true` if the body overlaps `other`.
@@ -135,7 +135,7 @@ impl Footprint {
         let corners = match self.form {
             Form::Disc { .. } => None,
             Form::Rectangle { half_length: x, half_width: y } => {
-                Some([(x, -y), (x, y), (-x, y), (-x, -y)].map(|(x, y)| self.outward(Place { x, y })))
+                Some([(x, -y), (x, y), (-x, y), (-x, -y)].map(|(x, y)| self.outward(Point { x, y })))
             }
         };
         let sides = corners.map(|[a, b, c, d]| [(a, b), (b, c), (c, d), (d, a)]);
@@ -143,30 +143,30 @@ impl Footprint {
     }
 
     /// Returns the ends of each side of a rectangle, counter-clockwise from the front; a disc has no sides.
-    pub fn edges(&self) -> impl Iterator<Item = (Place, Place)> {
+    pub fn edges(&self) -> impl Iterator<Item = (Point, Point)> {
         self.sides().map(|side| (side.from, side.to()))
     }
 
     /// Converts a point in the body's frame to a point on the floor.
-    fn outward(&self, place: Place) -> Place {
+    fn outward(&self, place: Point) -> Point {
         let (sin, cos) = libm::sincos(self.pose.theta.0);
         let at = self.at();
-        Place { x: at.x + place.x * cos - place.y * sin, y: at.y + place.x * sin + place.y * cos }
+        Point { x: at.x + place.x * cos - place.y * sin, y: at.y + place.x * sin + place.y * cos }
     }
 
     /// Converts a point on the floor to a point in the body's frame.
-    fn inward(&self, place: Place) -> Place {
+    fn inward(&self, place: Point) -> Point {
         let (sin, cos) = libm::sincos(self.pose.theta.0);
         let (x, y) = (place.x - self.pose.x.0, place.y - self.pose.y.0);
-        Place { x: x * cos + y * sin, y: y * cos - x * sin }
+        Point { x: x * cos + y * sin, y: y * cos - x * sin }
     }
 
     /// Returns the distance from `at` to the edge, negative inside.
-    pub(crate) fn distance(&self, at: Place) -> f64 {
+    pub(crate) fn distance(&self, at: Point) -> f64 {
         match self.form {
             Form::Disc { radius } => apart(self.at(), at) - radius,
             Form::Rectangle { half_length, half_width } => {
-                let Place { x, y } = self.inward(at);
+                let Point { x, y } = self.inward(at);
                 let (x, y) = (x.abs() - half_length, y.abs() - half_width);
                 if x <= 0.0 && y <= 0.0 { x.max(y) } else { libm::hypot(x.max(0.0), y.max(0.0)) }
             }
@@ -175,16 +175,16 @@ impl Footprint {
 
     /// Returns the point of the body that is nearest to `at`, which must be outside the body; for a disc, a point of
     /// its edge.
-    fn nearest(&self, at: Place) -> Place {
+    fn nearest(&self, at: Point) -> Point {
         match self.form {
             Form::Disc { radius } => {
                 let (x, y) = (at.x - self.pose.x.0, at.y - self.pose.y.0);
                 let part = radius / libm::hypot(x, y).max(f64::MIN_POSITIVE);
-                Place { x: self.pose.x.0 + part * x, y: self.pose.y.0 + part * y }
+                Point { x: self.pose.x.0 + part * x, y: self.pose.y.0 + part * y }
             }
             Form::Rectangle { half_length, half_width } => {
-                let Place { x, y } = self.inward(at);
-                self.outward(Place { x: x.clamp(-half_length, half_length), y: y.clamp(-half_width, half_width) })
+                let Point { x, y } = self.inward(at);
+                self.outward(Point { x: x.clamp(-half_length, half_length), y: y.clamp(-half_width, half_width) })
             }
         }
     }
@@ -247,7 +247,7 @@ impl Footprint {
 
     /// Returns the distance that a ray from outside in the unit direction `way` travels before it hits the body; `None`
     /// if the ray does not hit the body within `most` metres.
-    pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
+    pub(crate) fn met(&self, from: Point, way: Point, most: f64) -> Option<f64> {
         let Form::Disc { radius } = self.form else {
             return self.sides().filter_map(|side| side.met(from, way, most)).reduce(f64::min);
         };
@@ -267,23 +267,23 @@ impl Footprint {
 
     /// Returns the surface that a ray from outside in the unit direction `way` hits; `None` if the ray does not hit the
     /// body within `most` metres. The surface is smooth, and a disc has no edges.
-    pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
+    pub(crate) fn found(&self, from: Point, way: Point, most: f64) -> Option<Surface> {
         let Form::Disc { radius } = self.form else {
             let met = self.sides().filter_map(|side| Some((side.met(from, way, most)?, side)));
             let (range, side) = met.reduce(|one, other| if other.0 < one.0 { other } else { one })?;
             let length = libm::hypot(side.along.x, side.along.y);
-            let at = Place { x: from.x + range * way.x, y: from.y + range * way.y };
+            let at = Point { x: from.x + range * way.x, y: from.y + range * way.y };
             let edge = apart(at, side.from).min(apart(at, side.to()));
             return Some(Surface {
                 range,
-                normal: Place { x: side.along.y / length, y: -side.along.x / length },
+                normal: Point { x: side.along.y / length, y: -side.along.x / length },
                 edge,
                 rough: 0.0,
             });
         };
         let range = self.met(from, way, most)?;
         let (x, y) = (from.x + range * way.x - self.pose.x.0, from.y + range * way.y - self.pose.y.0);
-        let normal = Place { x: x / radius, y: y / radius };
+        let normal = Point { x: x / radius, y: y / radius };
         Some(Surface { range, normal, edge: f64::INFINITY, rough: 0.0 })
     }
 }

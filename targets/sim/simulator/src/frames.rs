@@ -2,28 +2,28 @@
 
 use mdle_runtime::{Nanos, Pose, SONARS};
 
-use crate::place::Place;
+use crate::place::Point;
 
 /// Maximum number of frames kept; when it is reached, every second frame is removed.
 pub(crate) const FRAMES_MOST: usize = 800;
 
 /// A frame: the state of the robot and of the moving objects at one time of the run.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Frame {
+pub(crate) struct FilmFrame {
     pub(crate) t: Nanos,
     pub(crate) pose: Pose,
     /// Position of each sonar's new echo; `None` for a sonar without a new echo.
-    pub(crate) echoes: [Option<Place>; SONARS],
+    pub(crate) echoes: [Option<Point>; SONARS],
     /// Displacement of each moving object of the world; `None` for an open door.
-    pub(crate) things: Vec<Option<Place>>,
+    pub(crate) things: Vec<Option<Point>>,
 }
 
 /// Frames of a run. The longer the run, the smaller the fraction of its frames that is kept.
 #[derive(Debug, Clone)]
 pub(crate) struct Frames {
-    kept: Vec<Frame>,
+    kept: Vec<FilmFrame>,
     /// The last frame of the run, even if it is not among the kept frames; `None` before the first frame.
-    last: Option<Frame>,
+    last: Option<FilmFrame>,
     /// Interval, in frames, at which frames are kept.
     stride: u64,
     seen: u64,
@@ -36,7 +36,7 @@ impl Frames {
     }
 
     /// Adds the next frame.
-    pub(crate) fn push(&mut self, frame: Frame) {
+    pub(crate) fn push(&mut self, frame: FilmFrame) {
         if self.seen.is_multiple_of(self.stride) {
             self.kept.push(frame.clone());
         }
@@ -53,7 +53,7 @@ impl Frames {
     }
 
     /// Returns the kept frames in order, followed by the last frame if it is not among them.
-    pub(crate) fn all(&self) -> Vec<Frame> {
+    pub(crate) fn all(&self) -> Vec<FilmFrame> {
         let last = self.last.as_ref().filter(|last| self.kept.last() != Some(last));
         self.kept.iter().chain(last).cloned().collect()
     }
@@ -68,7 +68,12 @@ mod tests {
         for turns in [1_u64, 2, 799, 800, 801, 5_000, 100_001] {
             let mut frames = Frames::new();
             for turn in 0..turns {
-                frames.push(Frame { t: Nanos(turn), pose: Pose::ORIGIN, echoes: [None; SONARS], things: Vec::new() });
+                frames.push(FilmFrame {
+                    t: Nanos(turn),
+                    pose: Pose::ORIGIN,
+                    echoes: [None; SONARS],
+                    things: Vec::new(),
+                });
             }
             let times: Vec<u64> = frames.all().iter().map(|frame| frame.t.0).collect();
             assert!(times.len() <= FRAMES_MOST && (times.len() as u64) >= turns.min(FRAMES_MOST as u64 / 2));

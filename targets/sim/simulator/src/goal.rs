@@ -3,7 +3,7 @@
 use mdle_quantity::Quantity;
 use mdle_runtime::{Pose, Radians};
 
-use crate::place::Place;
+use crate::place::Point;
 
 /// Maximum coordinate and maximum radius, in metres, as in a world file.
 const FURTHEST: f64 = 1e6;
@@ -25,14 +25,14 @@ pub enum Zone {
     /// A rectangle along the axes of the floor.
     Rectangle {
         /// Minimum coordinates.
-        min: Place,
+        min: Point,
         /// Maximum coordinates.
-        max: Place,
+        max: Point,
     },
     /// A circle.
     Circle {
         /// Centre of the circle.
-        center: Place,
+        center: Point,
         /// Radius, in metres; above 0.
         radius: f64,
     },
@@ -64,13 +64,13 @@ impl Goal {
         }
         let heading = heading
             .map(|(heading, tolerance)| (Radians::from_degrees(heading).wrapped(), Radians::from_degrees(tolerance)));
-        Ok(Self { zone: Zone::Circle { center: Place { x, y }, radius }, heading })
+        Ok(Self { zone: Zone::Circle { center: Point { x, y }, radius }, heading })
     }
 
     /// Returns `true` if a robot whose centre is at `pose` has arrived.
     #[must_use]
     pub fn holds(&self, pose: &Pose) -> bool {
-        let Place { x, y } = Place::of(pose);
+        let Point { x, y } = Point::of(pose);
         let inside = match self.zone {
             Zone::Rectangle { min, max } => (min.x..=max.x).contains(&x) && (min.y..=max.y).contains(&y),
             Zone::Circle { center, radius } => libm::hypot(x - center.x, y - center.y) <= radius,
@@ -83,21 +83,21 @@ impl Goal {
 impl Zone {
     /// Returns the corners with the minimum and the maximum coordinates.
     #[must_use]
-    pub fn corners(&self) -> [Place; 2] {
+    pub fn corners(&self) -> [Point; 2] {
         match *self {
             Self::Rectangle { min, max } => [min, max],
-            Self::Circle { center: Place { x, y }, radius } => {
-                [Place { x: x - radius, y: y - radius }, Place { x: x + radius, y: y + radius }]
+            Self::Circle { center: Point { x, y }, radius } => {
+                [Point { x: x - radius, y: y - radius }, Point { x: x + radius, y: y + radius }]
             }
         }
     }
 }
 
 /// Returns evenly spaced points on a circle.
-pub fn edge(center: Place, radius: f64) -> impl Iterator<Item = Place> {
+pub fn edge(center: Point, radius: f64) -> impl Iterator<Item = Point> {
     (0..DOTS).map(move |dot| {
         let bearing = Radians::from_degrees(f64::from(dot) * (360.0 / f64::from(DOTS))).0;
-        Place { x: center.x + radius * libm::cos(bearing), y: center.y + radius * libm::sin(bearing) }
+        Point { x: center.x + radius * libm::cos(bearing), y: center.y + radius * libm::sin(bearing) }
     })
 }
 

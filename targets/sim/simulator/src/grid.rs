@@ -5,7 +5,7 @@
 //! hit. The code uses only additions, multiplications, divisions and square roots, so that results have the same bits
 //! on every machine.
 
-use crate::place::Place;
+use crate::place::Point;
 
 /// Approximate number of cells per segment: more cells are faster but take more memory.
 const CELLS_FOR_EACH: f64 = 3.0;
@@ -20,8 +20,8 @@ const BEYOND: f64 = 1e-6;
 /// A segment from the point `from` to `from` plus `along`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Segment {
-    pub(crate) from: Place,
-    pub(crate) along: Place,
+    pub(crate) from: Point,
+    pub(crate) along: Point,
 }
 
 /// Point at which a ray hits a segment.
@@ -36,7 +36,7 @@ pub(crate) struct Hit {
 /// A grid of segments; each segment is entered in every cell that it touches.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
-    least: Place,
+    least: Point,
     /// Side length of a cell, in metres.
     cell: f64,
     columns: usize,
@@ -47,17 +47,17 @@ pub(crate) struct Grid {
 }
 
 impl Segment {
-    pub(crate) fn between(from: Place, to: Place) -> Self {
-        Self { from, along: Place { x: to.x - from.x, y: to.y - from.y } }
+    pub(crate) fn between(from: Point, to: Point) -> Self {
+        Self { from, along: Point { x: to.x - from.x, y: to.y - from.y } }
     }
 
-    pub(crate) fn to(&self) -> Place {
-        Place { x: self.from.x + self.along.x, y: self.from.y + self.along.y }
+    pub(crate) fn to(&self) -> Point {
+        Point { x: self.from.x + self.along.x, y: self.from.y + self.along.y }
     }
 
     /// Returns the distance that a ray from `from` in the unit direction `way` travels before it hits this segment;
     /// `None` if the ray does not hit it within `most` metres.
-    pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
+    pub(crate) fn met(&self, from: Point, way: Point, most: f64) -> Option<f64> {
         let (ox, oy) = (self.from.x - from.x, self.from.y - from.y);
         // Cramer's rule; the division is only done once a hit is certain.
         let determinant = way.x * self.along.y - way.y * self.along.x;
@@ -70,13 +70,13 @@ impl Segment {
     }
 
     /// Returns the point of this segment that is nearest to `at`.
-    pub(crate) fn nearest(&self, at: Place) -> Place {
+    pub(crate) fn nearest(&self, at: Point) -> Point {
         let (ox, oy) = (at.x - self.from.x, at.y - self.from.y);
         let part =
             (ox * self.along.x + oy * self.along.y) / (self.along.x * self.along.x + self.along.y * self.along.y);
         // Every segment has a positive length.
         let part = part.clamp(0.0, 1.0);
-        Place { x: self.from.x + part * self.along.x, y: self.from.y + part * self.along.y }
+        Point { x: self.from.x + part * self.along.x, y: self.from.y + part * self.along.y }
     }
 }
 
@@ -84,9 +84,9 @@ impl Grid {
     /// Returns a grid of these segments, whose coordinates must be finite.
     pub(crate) fn of(segments: &[Segment]) -> Self {
         let ends = || segments.iter().flat_map(|segment| [segment.from, segment.to()]);
-        let bound = |of: fn(Place) -> f64, pick: fn(f64, f64) -> f64| ends().map(of).reduce(pick).unwrap_or(0.0);
-        let least = Place { x: bound(|place| place.x, f64::min), y: bound(|place| place.y, f64::min) };
-        let most = Place { x: bound(|place| place.x, f64::max), y: bound(|place| place.y, f64::max) };
+        let bound = |of: fn(Point) -> f64, pick: fn(f64, f64) -> f64| ends().map(of).reduce(pick).unwrap_or(0.0);
+        let least = Point { x: bound(|place| place.x, f64::min), y: bound(|place| place.y, f64::min) };
+        let most = Point { x: bound(|place| place.x, f64::max), y: bound(|place| place.y, f64::max) };
         let (width, height) = (most.x - least.x, most.y - least.y);
         let cells = CELLS_FOR_EACH * segments.len().max(1) as f64;
         let long = width.max(height).max(1e-3);
@@ -110,7 +110,7 @@ impl Grid {
         for start in &mut starts {
             total += std::mem::replace(start, total);
         }
-        let nothing = Segment { from: self.least, along: Place { x: 0.0, y: 0.0 } };
+        let nothing = Segment { from: self.least, along: Point { x: 0.0, y: 0.0 } };
         let mut entries = vec![(nothing, 0); total as usize];
         let mut next = starts.clone();
         for (segment, number) in segments.iter().zip(0..) {
@@ -161,9 +161,9 @@ impl Grid {
 
     /// Returns the first segment that a ray from `from` in the unit direction `way` hits; `None` if there is no hit
     /// within `most` metres.
-    pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
+    pub(crate) fn ray(&self, from: Point, way: Point, most: f64) -> Option<Hit> {
         let (entered, left) = self.crossed(from, way, most)?;
-        let at = Place { x: from.x + entered * way.x, y: from.y + entered * way.y };
+        let at = Point { x: from.x + entered * way.x, y: from.y + entered * way.y };
         let (mut column, mut row) = (self.column(at.x), self.row(at.y));
         let mut across = Axis::of(from.x - self.least.x, way.x, column, self.cell);
         let mut up = Axis::of(from.y - self.least.y, way.y, row, self.cell);
@@ -191,7 +191,7 @@ impl Grid {
     }
 
     /// Returns the distances along a ray at which it enters and leaves the grid; `None` if it does not cross the grid.
-    fn crossed(&self, from: Place, way: Place, most: f64) -> Option<(f64, f64)> {
+    fn crossed(&self, from: Point, way: Point, most: f64) -> Option<(f64, f64)> {
         let beyond = BEYOND * self.cell;
         let slab = |from: f64, way: f64, cells: usize| {
             let (least, most) = (-beyond, cells as f64 * self.cell + beyond);
@@ -209,13 +209,13 @@ impl Grid {
     }
 
     /// Returns the number of segments in the cell that contains `at`.
-    pub(crate) fn beside(&self, at: Place) -> u64 {
+    pub(crate) fn beside(&self, at: Point) -> u64 {
         self.entries(self.column(at.x), self.row(at.y)).len() as u64
     }
 
     /// Returns `true` if a ray from `at` of the length `reach` may hit a segment: whether the bounding rectangle of all
     /// segments overlaps the square that contains all such rays.
-    pub(crate) fn is_in_reach(&self, at: Place, reach: f64) -> bool {
+    pub(crate) fn is_in_reach(&self, at: Point, reach: f64) -> bool {
         let reach = reach + BEYOND * (self.cell + reach);
         let (left, right) = (at.x - reach, at.x + reach);
         let (low, high) = (at.y - reach, at.y + reach);
@@ -229,7 +229,7 @@ impl Grid {
 
     /// Calls `take` with each segment that touches a cell within `reach` of `at`; a segment in several cells is passed
     /// several times.
-    pub(crate) fn near(&self, at: Place, reach: f64, mut take: impl FnMut(usize, &Segment)) {
+    pub(crate) fn near(&self, at: Point, reach: f64, mut take: impl FnMut(usize, &Segment)) {
         for row in self.row(at.y - reach)..=self.row(at.y + reach) {
             for column in self.column(at.x - reach)..=self.column(at.x + reach) {
                 for (segment, number) in self.entries(column, row) {

@@ -48,10 +48,10 @@ pub use mdle_runtime::Sensed;
 pub use mdle_runtime::Sensed as Output;
 /// Input of the robot.
 pub use mdle_runtime::Twist as Input;
-pub use model::{Body, PARTS, Part};
-pub use moving::{Schedule, Stop, Thing};
+pub use model::{Body, ModelPart, PARTS};
+pub use moving::{Schedule, Thing, Waypoint};
 pub use outline::Outline;
-pub use place::Place;
+pub use place::Point;
 pub use plot::{SignalCurve, TimeChart, TripDrawing};
 pub use robot::{Fault, Make, Simulated};
 pub use robot_ears::RobotEars;

@@ -36,7 +36,7 @@ impl fmt::Display for Body {
 
 /// Parts of a body's model that can be left out to see their effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum ModelPart {
     /// Lobe of a sonar. Without it, all objects in a cone of 25° are heard equally.
     Lobe,
     /// Mirror-like reflection of surfaces. Without it, surfaces are heard from any angle.
@@ -56,15 +56,15 @@ pub enum Part {
 }
 
 /// All parts, with their names in command-line options.
-pub const PARTS: [(&str, Part); 8] = [
-    ("lobe", Part::Lobe),
-    ("specular", Part::Specular),
-    ("minimum", Part::Minimum),
-    ("steps", Part::Steps),
-    ("noise", Part::Noise),
-    ("outliers", Part::Outliers),
-    ("order", Part::Order),
-    ("slip", Part::Slip),
+pub const PARTS: [(&str, ModelPart); 8] = [
+    ("lobe", ModelPart::Lobe),
+    ("specular", ModelPart::Specular),
+    ("minimum", ModelPart::Minimum),
+    ("steps", ModelPart::Steps),
+    ("noise", ModelPart::Noise),
+    ("outliers", ModelPart::Outliers),
+    ("order", ModelPart::Order),
+    ("slip", ModelPart::Slip),
 ];
 
 /// Model of a body: everything needed to simulate it.
@@ -169,7 +169,7 @@ const HALF_CONE: Radians = Radians::from_degrees(12.5);
 
 impl Model {
     /// Returns the model of a body without some of its parts.
-    pub(crate) fn of(body: Body, without: &[Part]) -> Self {
+    pub(crate) fn of(body: Body, without: &[ModelPart]) -> Self {
         let mut model = match body {
             Body::Ideal => ideal(),
             Body::Scout => scout(),
@@ -181,19 +181,19 @@ impl Model {
         model
     }
 
-    fn leave_out(&mut self, part: Part) {
+    fn leave_out(&mut self, part: ModelPart) {
         let Self { drive, hearing, .. } = self;
         match part {
-            Part::Lobe => (hearing.lobe, hearing.half_cone) = (None, HALF_CONE),
-            Part::Specular => hearing.facing = None,
-            Part::Minimum => hearing.least = 0.0,
-            Part::Steps => hearing.step = 0.0,
-            Part::Noise => {
+            ModelPart::Lobe => (hearing.lobe, hearing.half_cone) = (None, HALF_CONE),
+            ModelPart::Specular => hearing.facing = None,
+            ModelPart::Minimum => hearing.least = 0.0,
+            ModelPart::Steps => hearing.step = 0.0,
+            ModelPart::Noise => {
                 (hearing.spread, hearing.scale, hearing.fading, hearing.misses) = (0.0, 0.0, 0.0, 0.0);
             }
-            Part::Outliers => hearing.outliers = 0.0,
-            Part::Order => hearing.order = None,
-            Part::Slip => {
+            ModelPart::Outliers => hearing.outliers = 0.0,
+            ModelPart::Order => hearing.order = None,
+            ModelPart::Slip => {
                 drive.slip = drive.slip.map(|_| Slip { way: 0.0, turn: 0.0, bend: 0.0, wander: 0.0 });
             }
         }

@@ -6,7 +6,7 @@
 use crate::footprint::{Footprint, Form};
 use crate::grid::{Hit, Segment};
 use crate::outline::Outline;
-use crate::place::Place;
+use crate::place::Point;
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
 
 /// Minimum distance to which a moving object approaches the robot, in metres; the bumper feels the object at this
@@ -38,7 +38,7 @@ pub enum Schedule {
     Way {
         /// Times and positions of the centre: at least one, in order. The object rests before the first stop and after
         /// the last.
-        stops: Vec<Stop>,
+        stops: Vec<Waypoint>,
         /// `true` if the object continues from the first stop after the last stop.
         repeats: bool,
     },
@@ -46,21 +46,21 @@ pub enum Schedule {
 
 /// Position of a moving object at a certain time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stop {
+pub struct Waypoint {
     /// Time of the stop, in seconds.
     pub t: f64,
     /// Place of the centre.
-    pub at: Place,
+    pub at: Point,
 }
 
 impl Thing {
     /// Returns the corners of the object after it has moved by `gone` from its first position.
-    pub fn corners(&self, gone: Place) -> impl Iterator<Item = Place> {
-        self.outline.points.iter().map(move |point| Place { x: point.x + gone.x, y: point.y + gone.y })
+    pub fn corners(&self, gone: Point) -> impl Iterator<Item = Point> {
+        self.outline.points.iter().map(move |point| Point { x: point.x + gone.x, y: point.y + gone.y })
     }
 
     /// Returns the positions between which the centre of the object moves; a door has none.
-    pub(crate) fn way(&self) -> impl Iterator<Item = Place> {
+    pub(crate) fn way(&self) -> impl Iterator<Item = Point> {
         let stops = match &self.schedule {
             Schedule::Open { .. } => [].as_slice(),
             Schedule::Way { stops, .. } => stops.as_slice(),
@@ -69,22 +69,22 @@ impl Thing {
     }
 
     /// Returns the corners of the object at each of its stops.
-    pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
-        let still = Place { x: 0.0, y: 0.0 };
+    pub(crate) fn places(&self) -> impl Iterator<Item = Point> {
+        let still = Point { x: 0.0, y: 0.0 };
         let first = self.way().next();
-        let gone = self.way().filter_map(move |at| first.map(|first| Place { x: at.x - first.x, y: at.y - first.y }));
+        let gone = self.way().filter_map(move |at| first.map(|first| Point { x: at.x - first.x, y: at.y - first.y }));
         [still].into_iter().chain(gone.skip(1)).flat_map(|gone| self.corners(gone))
     }
 }
 
 impl Schedule {
     /// Returns the displacement at time `t` from the object's first position; `None` for an open door.
-    fn moved(&self, t: f64) -> Option<Place> {
+    fn moved(&self, t: f64) -> Option<Point> {
         match self {
             Self::Open { times, every } => {
                 let t = every.map_or(t, |every| libm::fmod(t, every));
                 let open = times.iter().any(|[from, to]| *from <= t && t < *to);
-                (!open).then_some(Place { x: 0.0, y: 0.0 })
+                (!open).then_some(Point { x: 0.0, y: 0.0 })
             }
             Self::Way { stops, repeats } => {
                 let (first, last) = (stops.first()?, stops.last()?);
@@ -93,19 +93,19 @@ impl Schedule {
                 } else {
                     t
                 };
-                let Place { x, y } = at(stops, t).unwrap_or(if t < first.t { first.at } else { last.at });
-                Some(Place { x: x - first.at.x, y: y - first.at.y })
+                let Point { x, y } = at(stops, t).unwrap_or(if t < first.t { first.at } else { last.at });
+                Some(Point { x: x - first.at.x, y: y - first.at.y })
             }
         }
     }
 }
 
 /// Returns the position at time `t` between two stops; `None` before the first stop, and from the last stop on.
-fn at(stops: &[Stop], t: f64) -> Option<Place> {
+fn at(stops: &[Waypoint], t: f64) -> Option<Point> {
     let (from, to) = stops.iter().zip(stops.iter().skip(1)).find(|(from, to)| from.t <= t && t < to.t)?;
     let part = (t - from.t) / (to.t - from.t);
     let between = |from: f64, to: f64| from + part * (to - from);
-    Some(Place { x: between(from.at.x, to.at.x), y: between(from.at.y, to.at.y) })
+    Some(Point { x: between(from.at.x, to.at.x), y: between(from.at.y, to.at.y) })
 }
 
 /// State of a moving object.
@@ -122,9 +122,9 @@ pub(crate) struct Moving {
     /// Sides of the object at its current position; empty for an open door.
     now: Vec<Segment>,
     /// Centre of a circle around the object at its first position; `moved` is the displacement from there.
-    centre: Place,
+    centre: Point,
     radius: f64,
-    moved: Option<Place>,
+    moved: Option<Point>,
 }
 
 impl Moving {
@@ -133,9 +133,9 @@ impl Moving {
         let first: Vec<_> =
             points.iter().zip(points.iter().skip(1)).map(|(from, to)| Segment::between(*from, *to)).collect();
         let bound =
-            |of: fn(&Place) -> f64, pick: fn(f64, f64) -> f64| points.iter().map(of).reduce(pick).unwrap_or(0.0);
-        let middle = |of: fn(&Place) -> f64| (bound(of, f64::min) + bound(of, f64::max)) / 2.0;
-        let centre = Place { x: middle(|place| place.x), y: middle(|place| place.y) };
+            |of: fn(&Point) -> f64, pick: fn(f64, f64) -> f64| points.iter().map(of).reduce(pick).unwrap_or(0.0);
+        let middle = |of: fn(&Point) -> f64| (bound(of, f64::min) + bound(of, f64::max)) / 2.0;
+        let centre = Point { x: middle(|place| place.x), y: middle(|place| place.y) };
         let radius = points.iter().map(|point| apart(centre, *point)).fold(0.0, f64::max);
         let ends = first.iter().map(|segment| ends(segment, first.iter())).collect();
         let mut moving = Self {
@@ -154,7 +154,7 @@ impl Moving {
     }
 
     /// Returns the displacement from the object's first position; `None` for an open door.
-    pub(crate) fn gone(&self) -> Option<Place> {
+    pub(crate) fn gone(&self) -> Option<Point> {
         self.moved
     }
 
@@ -163,10 +163,10 @@ impl Moving {
         self.now.iter()
     }
 
-    fn put(&mut self, moved: Option<Place>) {
+    fn put(&mut self, moved: Option<Point>) {
         self.now.clear();
-        if let Some(Place { x, y }) = moved {
-            let there = |place: Place| Place { x: place.x + x, y: place.y + y };
+        if let Some(Point { x, y }) = moved {
+            let there = |place: Point| Point { x: place.x + x, y: place.y + y };
             self.now.extend(self.first.iter().map(|segment| Segment { from: there(segment.from), ..*segment }));
         }
         self.moved = moved;
@@ -193,7 +193,7 @@ impl Moving {
 
     /// Moves the object to the displacement `moved`, unless this would bring it too close to `body`; returns `true` if
     /// it has moved there. An object that is already too close may move if it does not come closer.
-    fn is_put(&mut self, moved: Option<Place>, body: &Footprint) -> bool {
+    fn is_put(&mut self, moved: Option<Point>, body: &Footprint) -> bool {
         let was = self.moved;
         self.put(moved);
         let gap = self.gap(body, FAR);
@@ -209,13 +209,13 @@ impl Moving {
     }
 
     /// Returns the current centre of the circle around the object; `None` for an open door.
-    pub(crate) fn around(&self) -> Option<Place> {
-        let Place { x, y } = self.moved?;
-        Some(Place { x: self.centre.x + x, y: self.centre.y + y })
+    pub(crate) fn around(&self) -> Option<Point> {
+        let Point { x, y } = self.moved?;
+        Some(Point { x: self.centre.x + x, y: self.centre.y + y })
     }
 
     /// Returns the distance of the object from `at`, exact if it is below `most`; infinite for an open door.
-    pub(crate) fn distance(&self, at: Place, most: f64) -> f64 {
+    pub(crate) fn distance(&self, at: Point, most: f64) -> f64 {
         match self.around() {
             Some(around) if apart(around, at) - self.radius < most => {
                 self.now.iter().fold(f64::INFINITY, |least, segment| least.min(apart(segment.nearest(at), at)))
@@ -239,7 +239,7 @@ impl Moving {
     }
 
     /// Returns the first side of the object that a ray hits; `None` if there is no hit within `most` metres.
-    pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
+    pub(crate) fn ray(&self, from: Point, way: Point, most: f64) -> Option<Hit> {
         let around = self.around()?;
         let (x, y) = (around.x - from.x, around.y - from.y);
         let (along, across) = (x * way.x + y * way.y, x * way.y - y * way.x);
@@ -257,9 +257,9 @@ impl Moving {
     }
 
     /// Returns the surface of the object that a ray hits; `None` if there is no hit within `most` metres.
-    pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
+    pub(crate) fn found(&self, from: Point, way: Point, most: f64) -> Option<Surface> {
         let Hit { range, segment } = self.ray(from, way, most)?;
-        let at = Place { x: from.x + range * way.x, y: from.y + range * way.y };
+        let at = Point { x: from.x + range * way.x, y: from.y + range * way.y };
         let smooth = surface(self.now.get(segment)?, self.ends.get(segment)?, at, way, range);
         Some(Surface { rough: self.rough, ..smooth })
     }

@@ -6,14 +6,14 @@ use mdle_runtime::{Meters, Pose};
 
 /// A position on the floor, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
+pub struct Point {
     /// Coordinate along the first axis, in metres.
     pub x: f64,
     /// Coordinate along the second axis, to the left of the first, in metres.
     pub y: f64,
 }
 
-impl Place {
+impl Point {
     /// Returns the position of a pose.
     #[must_use]
     pub fn of(pose: &Pose) -> Self {
@@ -22,7 +22,7 @@ impl Place {
     }
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Point {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "({}, {})", self.x, self.y)
     }

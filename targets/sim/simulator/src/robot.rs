@@ -11,8 +11,8 @@ use crate::battery::Battery;
 use crate::body::{Body, STEP};
 use crate::charger::Charger;
 use crate::footprint::{Footprint, Form};
-use crate::model::{self, Model, Part};
-use crate::place::Place;
+use crate::model::{self, Model, ModelPart};
+use crate::place::Point;
 use crate::sonar::{Heard, Ring};
 use crate::start::{self, StartError};
 use crate::walls::{Others, Walls};
@@ -43,7 +43,7 @@ pub struct Make {
     /// The body.
     pub body: model::Body,
     /// Parts of the body that are left out.
-    pub without: Vec<Part>,
+    pub without: Vec<ModelPart>,
     /// Random seed for sensor and wheel errors; `None` for a robot without errors.
     pub seed: Option<u64>,
 }
@@ -230,13 +230,13 @@ impl Simulated {
     }
 
     /// Returns the displacement of each moving object of the world; `None` for an open door.
-    pub fn gone(&self) -> impl Iterator<Item = Option<Place>> {
+    pub fn gone(&self) -> impl Iterator<Item = Option<Point>> {
         self.walls.gone()
     }
 
     /// Returns the point of an obstacle that the body touches; the centre of the body if it touches no obstacle.
-    pub(crate) fn touched(&self) -> Place {
-        let at = Place::of(&self.body.pose);
+    pub(crate) fn touched(&self) -> Point {
+        let at = Point::of(&self.body.pose);
         let body = self.footprint();
         self.walls.contact(&body, 0.1 * body.form.radius()).map_or(at, |contact| contact.place)
     }

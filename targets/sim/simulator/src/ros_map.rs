@@ -13,7 +13,7 @@ mod tests;
 use mdle_runtime::Pose;
 
 use crate::outline::Outline;
-use crate::place::Place;
+use crate::place::Point;
 use crate::world::World;
 use crate::world_error::WorldError;
 use contours::contours;
@@ -33,7 +33,7 @@ impl Header {
         let place = |(column, row): (i32, i32)| {
             let (x, y) =
                 (f64::from(column) * self.resolution, (image.height as f64 - f64::from(row)) * self.resolution);
-            Place { x: self.x + x * cos - y * sin, y: self.y + x * sin + y * cos }
+            Point { x: self.x + x * cos - y * sin, y: self.y + x * sin + y * cos }
         };
         let dark = image.darker(self.occupied, self.negate);
         let stands = |column, row| dark.get(row * image.width + column).copied().unwrap_or(false);

@@ -10,7 +10,7 @@ use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, Radians, SONARS};
 
 use crate::model::{Hearing, Order, Transducer};
 use crate::noise::{Noise, Purpose};
-use crate::place::Place;
+use crate::place::Point;
 use crate::walls::Walls;
 
 /// The sonars and their last pings.
@@ -173,14 +173,14 @@ impl Errors {
 }
 
 /// Returns the position and the direction of a transducer.
-fn placed(transducer: &Transducer, pose: &Pose, ring_radius: f64) -> (Place, Radians) {
+fn placed(transducer: &Transducer, pose: &Pose, ring_radius: f64) -> (Point, Radians) {
     let axis = Radians(pose.theta.0 + transducer.bearing.0);
     if is_on_the_ring(transducer, ring_radius) {
-        return (Place::of(&pose.towards(axis, Meters(ring_radius))), axis);
+        return (Point::of(&pose.towards(axis, Meters(ring_radius))), axis);
     }
     let (sin, cos) = libm::sincos(pose.theta.0);
     let Transducer { x, y, .. } = transducer;
-    (Place { x: pose.x.0 + x * cos - y * sin, y: pose.y.0 + x * sin + y * cos }, axis)
+    (Point { x: pose.x.0 + x * cos - y * sin, y: pose.y.0 + x * sin + y * cos }, axis)
 }
 
 fn is_on_the_ring(transducer: &Transducer, ring_radius: f64) -> bool {

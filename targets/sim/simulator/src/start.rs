@@ -7,7 +7,7 @@ use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::footprint::{Footprint, Form};
-use crate::place::Place;
+use crate::place::Point;
 use crate::walls::{self, Walls};
 use crate::world::World;
 
@@ -71,7 +71,7 @@ impl FromStr for Start {
 /// # Errors
 /// Returns the reason why the robot cannot start there.
 pub fn check(pose: &Pose, form: Form, world: &World, walls: &Walls) -> Result<(), StartError> {
-    let (place, body) = (Place::of(pose), Footprint { pose: *pose, form });
+    let (place, body) = (Point::of(pose), Footprint { pose: *pose, form });
     if let Some(outline) = world.solid(place) {
         return Err(StartError::Inside(outline.name.clone()));
     }
@@ -80,14 +80,14 @@ pub fn check(pose: &Pose, form: Form, world: &World, walls: &Walls) -> Result<()
         return Err(StartError::Overlaps(form, name.unwrap_or_default()));
     }
     // A world without closed walls has no outside.
-    if !encloses(walls, place) && encloses(walls, Place::of(&world.start)) {
+    if !encloses(walls, place) && encloses(walls, Point::of(&world.start)) {
         return Err(StartError::OffTheFloor);
     }
     Ok(())
 }
 
 /// Returns `true` if there is a wall in every direction from `place`.
-fn encloses(walls: &Walls, place: Place) -> bool {
+fn encloses(walls: &Walls, place: Point) -> bool {
     (0..LOOKS).all(|look| {
         let direction = Radians::from_degrees(f64::from(look) * (360.0 / f64::from(LOOKS)));
         walls.ray(place, direction, SIGHT).is_some()

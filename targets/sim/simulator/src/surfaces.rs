@@ -1,7 +1,7 @@
 //! Determines properties of the surface that a ray hits: its normal, and the nearest edge.
 
 use crate::grid::Segment;
-use crate::place::Place;
+use crate::place::Point;
 
 /// Distance below which the end of a segment counts as a point of another segment, in metres.
 const TOGETHER: f64 = 1e-3;
@@ -10,17 +10,17 @@ const SMOOTH: f64 = 0.866;
 
 /// Form of one end of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum End {
+pub(crate) enum SegmentEnd {
     /// The end is free.
     Edge,
     /// The end touches the middle of another segment, or two or more other segments.
     Covered,
     /// The end meets another segment, which continues in this unit direction.
-    Meets(Place),
+    Meets(Point),
 }
 
 /// Forms of both ends of a segment; the end at `from` is first.
-pub(crate) type Ends = [End; 2];
+pub(crate) type Ends = [SegmentEnd; 2];
 
 /// The surface that a ray has hit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +28,7 @@ pub(crate) struct Surface {
     /// Length of the ray, in metres.
     pub(crate) range: f64,
     /// Unit normal of the surface, on the side of the ray.
-    pub(crate) normal: Place,
+    pub(crate) normal: Point,
     /// Distance of the nearest edge that reflects sound back to the start of the ray, in metres; infinite if there is
     /// no such edge.
     pub(crate) edge: f64,
@@ -47,12 +47,12 @@ pub(crate) fn ends<'s>(segment: &Segment, others: impl Iterator<Item = &'s Segme
 /// of segments.
 pub(crate) struct Meeting {
     segment: Segment,
-    ends: [(End, Option<Segment>); 2],
+    ends: [(SegmentEnd, Option<Segment>); 2],
 }
 
 impl Meeting {
     pub(crate) fn of(segment: Segment) -> Self {
-        Self { segment, ends: [(End::Edge, None); 2] }
+        Self { segment, ends: [(SegmentEnd::Edge, None); 2] }
     }
 
     /// Adds a segment that may touch an end; the segment may be given several times.
@@ -66,7 +66,7 @@ impl Meeting {
                 continue;
             }
             // Where three segments meet, there is no edge on any side.
-            *end = if first.is_none() { met(other, at) } else { End::Covered };
+            *end = if first.is_none() { met(other, at) } else { SegmentEnd::Covered };
             *first = first.or(Some(*other));
         }
     }
@@ -77,31 +77,31 @@ impl Meeting {
 }
 
 /// Returns the form of a segment's end at `at`, which `other` touches.
-fn met(other: &Segment, at: Place) -> End {
+fn met(other: &Segment, at: Point) -> SegmentEnd {
     let way = |sign: f64| {
         let length = libm::hypot(other.along.x, other.along.y);
-        End::Meets(Place { x: sign * other.along.x / length, y: sign * other.along.y / length })
+        SegmentEnd::Meets(Point { x: sign * other.along.x / length, y: sign * other.along.y / length })
     };
     if apart(other.from, at) <= TOGETHER {
         way(1.0)
     } else if apart(other.to(), at) <= TOGETHER {
         way(-1.0)
     } else {
-        End::Covered
+        SegmentEnd::Covered
     }
 }
 
 /// Returns the surface that a ray in the unit direction `way` hits at the point `at` of `segment`, after `range`
 /// metres. The surface is smooth.
-pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, range: f64) -> Surface {
+pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Point, way: Point, range: f64) -> Surface {
     let length = libm::hypot(segment.along.x, segment.along.y);
-    let along = Place { x: segment.along.x / length, y: segment.along.y / length };
-    let left = Place { x: -along.y, y: along.x };
-    let normal = if dot(left, way) < 0.0 { left } else { Place { x: along.y, y: -along.x } };
+    let along = Point { x: segment.along.x / length, y: segment.along.y / length };
+    let left = Point { x: -along.y, y: along.x };
+    let normal = if dot(left, way) < 0.0 { left } else { Point { x: along.y, y: -along.x } };
     let [first, second] = ends;
     let mut edge = f64::INFINITY;
     for (end, to, outward) in [(first, segment.from, -1.0), (second, segment.to(), 1.0)] {
-        let outward = Place { x: outward * along.x, y: outward * along.y };
+        let outward = Point { x: outward * along.x, y: outward * along.y };
         if is_edge(end, outward, normal) {
             edge = edge.min(apart(to, at));
         }
@@ -111,19 +111,19 @@ pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, ran
 
 /// Returns `true` if this end of a surface is a free edge, seen from the side to which `normal` points. `outward`
 /// points along the surface to the end.
-fn is_edge(end: &End, outward: Place, normal: Place) -> bool {
+fn is_edge(end: &SegmentEnd, outward: Point, normal: Point) -> bool {
     match end {
-        End::Edge => true,
-        End::Covered => false,
+        SegmentEnd::Edge => true,
+        SegmentEnd::Covered => false,
         // A surface that bends towards the ray forms a corner, and one that continues straight is the same surface.
-        End::Meets(on) => dot(*on, outward) < SMOOTH && dot(*on, normal) <= 0.0,
+        SegmentEnd::Meets(on) => dot(*on, outward) < SMOOTH && dot(*on, normal) <= 0.0,
     }
 }
 
-pub(crate) fn dot(one: Place, other: Place) -> f64 {
+pub(crate) fn dot(one: Point, other: Point) -> f64 {
     one.x * other.x + one.y * other.y
 }
 
-pub(crate) fn apart(one: Place, other: Place) -> f64 {
+pub(crate) fn apart(one: Point, other: Point) -> f64 {
     libm::hypot(other.x - one.x, other.y - one.y)
 }

@@ -9,8 +9,8 @@ use mdle_runtime::capability::{Odometry as _, SonarRing as _};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, Sensed, SonarId};
 
 use crate::footprint::{Footprint, Form};
-use crate::frames::{Frame, Frames};
-use crate::place::Place;
+use crate::frames::{FilmFrame, Frames};
+use crate::place::Point;
 pub(crate) use ways::{Atom, Mark, Ways};
 
 /// Side length of a square in which at most one echo is kept, in metres, so that even a long run stores a limited
@@ -26,16 +26,16 @@ pub(crate) struct Trail {
     /// Current pose of the robot.
     pub(crate) here: Pose,
     /// Current displacement of each moving object of the world; `None` for an open door.
-    pub(crate) things: Vec<Option<Place>>,
+    pub(crate) things: Vec<Option<Point>>,
     /// The path driven, divided by atoms.
     pub(crate) ways: Ways,
     /// Texts about the run, for titles.
     pub(crate) about: About,
     /// Positions of echoes, at most one per square of 4 cm.
-    pub(crate) echoes: Vec<Place>,
+    pub(crate) echoes: Vec<Point>,
     heard: BTreeSet<(i64, i64)>,
     /// Position and time of the beginning of each contact, at most one per square of 4 cm.
-    pub(crate) contacts: Vec<(Place, Nanos)>,
+    pub(crate) contacts: Vec<(Point, Nanos)>,
     touched: BTreeSet<(i64, i64)>,
     /// Time of the robot's last output; `None` before the first output.
     sensed: Option<Nanos>,
@@ -77,7 +77,7 @@ impl Trail {
             start: *pose,
             here: *pose,
             things: Vec::new(),
-            ways: Ways::from(Place::of(pose)),
+            ways: Ways::from(Point::of(pose)),
             about: About::default(),
             echoes: Vec::new(),
             heard: BTreeSet::new(),
@@ -94,7 +94,7 @@ impl Trail {
     /// Records that the robot is at `pose`.
     pub(crate) fn went(&mut self, pose: &Pose) {
         self.here = *pose;
-        self.ways.went(Place::of(pose));
+        self.ways.went(Point::of(pose));
     }
 
     /// Records the output `sensed` of the robot at its current pose, at time `t`.
@@ -109,12 +109,12 @@ impl Trail {
         if let Some(frames) = &mut self.frames {
             // After the last turn the robot is only stopped: the film has the duration of the plan.
             let t = self.ended.map_or(t, |ended| t.min(ended));
-            frames.push(Frame { t, pose: self.here, echoes, things: self.things.clone() });
+            frames.push(FilmFrame { t, pose: self.here, echoes, things: self.things.clone() });
         }
     }
 
     /// Records that the body comes into contact with an obstacle at `place`, at time `t`.
-    pub(crate) fn touched(&mut self, place: Place, t: Nanos) {
+    pub(crate) fn touched(&mut self, place: Point, t: Nanos) {
         if self.touched.insert(square(place)) {
             self.contacts.push((place, t));
         }
@@ -123,7 +123,7 @@ impl Trail {
     /// Records that an atom begins at the robot's pose; `number` is its state in the first pass of the
     /// enclosing loops.
     pub(crate) fn began(&mut self, number: u64, law: &str, t: Nanos) {
-        self.ways.began(number, law, t, Place::of(&self.here));
+        self.ways.began(number, law, t, Point::of(&self.here));
     }
 
     /// Records that the turns of the run have ended.
@@ -136,15 +136,15 @@ impl Trail {
     }
 
     /// Returns all recorded places.
-    pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
-        self.ways.places().chain([Place::of(&self.here)])
+    pub(crate) fn places(&self) -> impl Iterator<Item = Point> {
+        self.ways.places().chain([Point::of(&self.here)])
     }
 }
 
 /// Returns, for each sonar, the floor position of its latest echo, placed on the axis of the sonar's cone, or `None` if
 /// the sonar has not pinged since `before`.
 #[must_use]
-pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Place>; SONARS] {
+pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Point>; SONARS] {
     let mut echoes = [None; SONARS];
     for (echo, number) in echoes.iter_mut().zip(0..) {
         let sonar = SonarId::new(number);
@@ -153,7 +153,7 @@ pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Pl
         let Some((ping, Meters(range))) = newest.and_then(|ping| Some((ping, ping.range?))) else { continue };
         let from = on_the_floor(&ping.pose, pose, &sensed.pose());
         let axis = Radians(from.theta.0 + sonar.bearing().0);
-        let place = Place::of(&from.towards(axis, Meters(sensed.ring_radius().0 + range)));
+        let place = Point::of(&from.towards(axis, Meters(sensed.ring_radius().0 + range)));
         // A user's own driver may report any value.
         *echo = Some(place).filter(|place| place.x.is_finite() && place.y.is_finite());
     }
@@ -173,7 +173,7 @@ fn on_the_floor(then: &Pose, here: &Pose, odometry: &Pose) -> Pose {
     }
 }
 
-fn square(place: Place) -> (i64, i64) {
+fn square(place: Point) -> (i64, i64) {
     let number = |metres: f64| libm::floor(metres / SQUARE) as i64;
     (number(place.x), number(place.y))
 }

@@ -8,7 +8,7 @@ use crate::footprint::{Contact, Footprint, Form};
 use crate::grid::{Grid, Hit, Segment};
 use crate::moving::Moving;
 use crate::outline::Outline;
-use crate::place::Place;
+use crate::place::Point;
 use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
 use crate::world::World;
 
@@ -103,21 +103,21 @@ impl Walls {
     /// Returns the distance that a ray from `from` travels before it hits an obstacle; `None` if that is `most` metres
     /// or more.
     #[must_use]
-    pub fn ray(&self, from: Place, direction: Radians, most: f64) -> Option<f64> {
+    pub fn ray(&self, from: Point, direction: Radians, most: f64) -> Option<f64> {
         let (sin, cos) = libm::sincos(direction.0);
-        self.cast(from, Place { x: cos, y: sin }, most)
+        self.cast(from, Point { x: cos, y: sin }, most)
     }
 
     /// Returns the distance that a ray in the direction of the unit vector `way` travels before it hits an obstacle;
     /// `None` if that is `most` metres or more.
     #[must_use]
-    pub fn cast(&self, from: Place, way: Place, most: f64) -> Option<f64> {
+    pub fn cast(&self, from: Point, way: Point, most: f64) -> Option<f64> {
         self.cast_among(self.all(), from, way, most)
     }
 
     /// Returns the distance that a ray travels, as [`Walls::cast`] does, but considers only moving objects and the
     /// obstacles in `reached`.
-    pub(crate) fn cast_among(&self, reached: Reached<'_>, from: Place, way: Place, most: f64) -> Option<f64> {
+    pub(crate) fn cast_among(&self, reached: Reached<'_>, from: Point, way: Point, most: f64) -> Option<f64> {
         let range = nearest_of(reached.others, from, way, most).map_or(most, |(range, _)| range);
         let hit = reached.standing.then(|| self.standing.grid.ray(from, way, range)).flatten();
         let range = hit.map_or(range, |hit| hit.range);
@@ -132,14 +132,14 @@ impl Walls {
     }
 
     /// Returns `true` if a ray of this length from `from` may hit a fixed obstacle.
-    pub(crate) fn stand_in_reach(&self, from: Place, most: f64) -> bool {
+    pub(crate) fn stand_in_reach(&self, from: Point, most: f64) -> bool {
         self.standing.grid.is_in_reach(from, most)
     }
 
     /// Returns the surface that a ray in the direction of the unit vector `way` hits; `None` if there is no hit within
     /// `most` metres. Considers only moving objects and the obstacles in `reached`.
-    pub(crate) fn found_among(&self, reached: Reached<'_>, from: Place, way: Place, most: f64) -> Option<Surface> {
-        let at = |range: f64| Place { x: from.x + range * way.x, y: from.y + range * way.y };
+    pub(crate) fn found_among(&self, reached: Reached<'_>, from: Point, way: Point, most: f64) -> Option<Surface> {
+        let at = |range: f64| Point { x: from.x + range * way.x, y: from.y + range * way.y };
         let other = nearest_of(reached.others, from, way, most);
         // Only obstacles nearer than the nearest robot are searched.
         let reach = other.map_or(most, |(range, _)| range);
@@ -159,12 +159,12 @@ impl Walls {
 
     /// Returns the distance from `at` to the nearest wall, in metres, or `reach` if that is less.
     #[must_use]
-    pub fn clearance(&self, at: Place, reach: f64) -> f64 {
+    pub fn clearance(&self, at: Point, reach: f64) -> f64 {
         self.standing(at, reach).min(self.moving(at))
     }
 
     /// Returns the distance from `at` to the nearest fixed obstacle, in metres, or `reach` if that is less.
-    pub(crate) fn standing(&self, at: Place, reach: f64) -> f64 {
+    pub(crate) fn standing(&self, at: Point, reach: f64) -> f64 {
         let mut least = reach;
         self.standing.grid.near(at, reach, |_, segment| least = least.min(apart(segment.nearest(at), at)));
         least
@@ -172,7 +172,7 @@ impl Walls {
 
     /// Returns the distance from `at` to the nearest moving object or other robot, in metres; infinite if there is no
     /// such object.
-    fn moving(&self, at: Place) -> f64 {
+    fn moving(&self, at: Point) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.distance(at, least).min(least));
         self.others.touched.iter().fold(least, |least, other| least.min(other.distance(at)))
     }
@@ -229,17 +229,17 @@ impl Walls {
     }
 
     /// Returns the displacement of each moving object from its first position; `None` for an open door.
-    pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Place>> {
+    pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Point>> {
         self.moving.iter().map(Moving::gone)
     }
 
     /// Returns the centre of each moving object, except open doors.
-    pub(crate) fn things(&self) -> impl Iterator<Item = Place> {
+    pub(crate) fn things(&self) -> impl Iterator<Item = Point> {
         self.moving.iter().filter_map(Moving::around)
     }
 
     /// Returns the other robots that rays from `from` may hit at angles of at most `half_cone` from `axis`.
-    pub(crate) fn others_in(&self, from: Place, axis: Radians, half_cone: Radians) -> Vec<Footprint> {
+    pub(crate) fn others_in(&self, from: Point, axis: Radians, half_cone: Radians) -> Vec<Footprint> {
         if self.others.heard.is_empty() {
             return Vec::new();
         }
@@ -284,7 +284,7 @@ impl Walls {
 
 /// Returns the robot that a ray in the unit direction `way` hits first, and its distance; `None` if there is no hit
 /// within `most` metres.
-fn nearest_of(others: &[Footprint], from: Place, way: Place, most: f64) -> Option<(f64, &Footprint)> {
+fn nearest_of(others: &[Footprint], from: Point, way: Point, most: f64) -> Option<(f64, &Footprint)> {
     let mut nearest = (most, None);
     for other in others {
         if let Some(range) = other.met(from, way, nearest.0) {

@@ -7,7 +7,7 @@ use crate::charger::Charger;
 use crate::goal::Goal;
 use crate::moving::Thing;
 use crate::outline::Outline;
-use crate::place::Place;
+use crate::place::Point;
 
 /// Maximum number of walls and sides; preparing a million of them takes a second.
 const SEGMENTS_MOST: usize = 1_000_000;
@@ -54,7 +54,7 @@ impl World {
     }
 
     /// Returns the box, disc or contour that contains `place`; `None` if the place is free.
-    pub(crate) fn solid(&self, place: Place) -> Option<&Outline> {
+    pub(crate) fn solid(&self, place: Point) -> Option<&Outline> {
         let around = || self.outlines.iter().take(self.contours).filter(|outline| outline.surrounds(place));
         if around().count() % 2 == 1 {
             return around().next_back();
@@ -67,7 +67,7 @@ impl World {
     /// the charger can be reached. The obstacle contains the position of a robot on the charger, or is closer to it
     /// than the radius.
     pub(crate) fn obstacle_at(&self, charger: &Charger, radius: f64) -> Option<&str> {
-        let place = Place::of(&charger.pose);
+        let place = Point::of(&charger.pose);
         let near = || {
             self.segments().find(|(_, from, to)| {
                 let (dx, dy) = (to.x - from.x, to.y - from.y);
@@ -90,19 +90,19 @@ impl World {
     }
 
     /// Returns all corners of the fixed outlines, and of the moving objects at each of their stops.
-    pub fn places(&self) -> impl Iterator<Item = Place> {
+    pub fn places(&self) -> impl Iterator<Item = Point> {
         let standing = self.outlines.iter().flat_map(|outline| outline.points.iter().copied());
         standing.chain(self.things.iter().flat_map(Thing::places))
     }
 
     /// Returns all walls and sides of boxes, each with its outline.
-    pub fn segments(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
+    pub fn segments(&self) -> impl Iterator<Item = (&Outline, Point, Point)> {
         self.outlines.iter().flat_map(Outline::segments)
     }
 
     /// Returns all walls and sides of boxes, and the sides of all moving objects at their first positions, each
     /// with its outline.
-    pub(crate) fn everything(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
+    pub(crate) fn everything(&self) -> impl Iterator<Item = (&Outline, Point, Point)> {
         self.segments().chain(self.things.iter().flat_map(|thing| thing.outline.segments()))
     }
 }

@@ -9,7 +9,7 @@ use mdle_runtime::{
     Robot as _, Twist,
 };
 use mdle_sim::alphabet::GoAvoid;
-use mdle_sim::{Body, Make, Place, Simulated};
+use mdle_sim::{Body, Make, Point, Simulated};
 
 use crate::number;
 use crate::worlds::{Crossing, hall};
@@ -20,7 +20,7 @@ const TURNS: u64 = 1800;
 /// Number of turns after the contact for which a stationary robot is observed; by then the walker has passed.
 const PASSED: u64 = 50;
 /// Start and radius of the walker, in metres, as in the world.
-const WALKER: (Place, f64) = (Place { x: 8.0, y: 1.0 }, 0.25);
+const WALKER: (Point, f64) = (Point { x: 8.0, y: 1.0 }, 0.25);
 
 /// Returns `true` if the obstacle that the robot's bumper reports is the walker.
 fn is_walker(robot: &Simulated) -> bool {

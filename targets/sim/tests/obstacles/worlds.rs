@@ -1,14 +1,14 @@
 //! Worlds through which a body can barely pass: doorways, boxes in a hallway, corners, and random rooms; also the
 //! simulator's own worlds.
 
-use mdle_sim::{Body, Place, World};
+use mdle_sim::{Body, Point, World};
 
 use crate::chance::Chance;
 
 /// A world to cross, and the destination.
 pub(crate) struct Crossing {
     pub(crate) world: World,
-    pub(crate) to: Place,
+    pub(crate) to: Point,
 }
 
 /// Returns the width on which the widths of passages are based, in metres: the diameter of a Scout, or the shorter side
@@ -25,7 +25,7 @@ fn ahead(seed: u64, far: f64, outlines: &str) -> Crossing {
     let mut chance = Chance::new(seed);
     let (y, heading) = (chance.within(0.05), chance.within(5.0));
     let text = format!("start = {{ y = {y}, heading = {heading} }}\n{outlines}");
-    Crossing { world: World::parse("a test's world", &text).expect("a good world"), to: Place { x: far, y } }
+    Crossing { world: World::parse("a test's world", &text).expect("a good world"), to: Point { x: far, y } }
 }
 
 /// Returns a hallway of this width along the first axis, closed at its ends.
@@ -66,7 +66,7 @@ pub(crate) fn room(_: Body, seed: u64) -> Crossing {
     let mut world = World::named("room").expect("a world").expect("a good world");
     let mut chance = Chance::new(seed);
     let far = 7.0 * libm::cos(world.start.theta.0);
-    let to = Place { x: world.start.x.0 + far, y: world.start.y.0 + far };
+    let to = Point { x: world.start.x.0 + far, y: world.start.y.0 + far };
     world.start.theta.0 += chance.within(5.0_f64.to_radians());
     Crossing { world, to }
 }
@@ -77,13 +77,13 @@ pub(crate) fn hall(_: Body, seed: u64) -> Crossing {
     let mut chance = Chance::new(seed);
     world.start.x.0 += 1.5 * chance.unit();
     world.start.y.0 += chance.within(0.5);
-    Crossing { to: Place { x: 14.5, y: world.start.y.0 }, world }
+    Crossing { to: Point { x: 14.5, y: world.start.y.0 }, world }
 }
 
 /// Returns a random room whose gaps are 15 cm wider than the body.
 pub(crate) fn random(body: Body, seed: u64) -> Crossing {
     let world = crate::room::room(seed, width(body) + 0.15);
-    Crossing { world, to: Place { x: 7.0, y: 7.0 } }
+    Crossing { world, to: Point { x: 7.0, y: 7.0 } }
 }
 
 /// Returns the world `maze`, with a path through its first passages, from the start to the first corner.
@@ -92,5 +92,5 @@ pub(crate) fn maze(_: Body, seed: u64) -> Crossing {
     let mut chance = Chance::new(seed);
     world.start.x.0 += chance.within(0.05);
     world.start.theta.0 = core::f64::consts::FRAC_PI_2 + chance.within(0.1);
-    Crossing { to: Place { x: 1.8, y: 4.2 }, world }
+    Crossing { to: Point { x: 1.8, y: 4.2 }, world }
 }

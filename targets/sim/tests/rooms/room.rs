@@ -8,7 +8,7 @@ use mdle_runtime::{
     Begin, Completes, Control, Frame, Law, Meters, MetersPerSecond, Nanos, Output, Pose, Radians, Robot, Twist,
 };
 use mdle_sim::alphabet::GoAvoid;
-use mdle_sim::{Make, Place, Simulated, World};
+use mdle_sim::{Make, Point, Simulated, World};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -66,7 +66,7 @@ pub(crate) fn room(seed: u64, gap: f64) -> World {
 }
 
 /// Drives to a place, relative to the start, in `world`.
-pub(crate) fn drive(make: &Make, world: &World, to: Place) -> Outcome {
+pub(crate) fn drive(make: &Make, world: &World, to: Point) -> Outcome {
     let period = Duration::from_millis(100);
     let mut robot = Simulated::with(make, world, world.start, period).expect("a start on the floor");
     let (mut input, mut law) = (Twist::default(), None);

@@ -2,15 +2,15 @@
 
 use super::{BracketKind, Open, Pass};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::source::Place;
+use crate::syntax::source::TextRange;
 use crate::syntax::token::{Tok, Token};
 
 impl Pass<'_, '_> {
     /// Closes all brackets that are open at the end of the text.
     pub(super) fn end(&mut self) {
         let stopped = self.balanced.diagnostics.iter().any(|diagnostic| diagnostic.code == Code::E0106);
-        let end = self.balanced.tokens.last().map_or(Place::new(0, 0), |token| token.place);
-        let end = Place::new(end.end, end.end);
+        let end = self.balanced.tokens.last().map_or(TextRange::new(0, 0), |token| token.place);
+        let end = TextRange::new(end.end, end.end);
         while let Some(open) = self.open.last().copied() {
             match open.kind {
                 _ if stopped => drop(self.force()),
@@ -26,7 +26,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    fn unclosed_brace(&mut self, open: Open, end: Place) {
+    fn unclosed_brace(&mut self, open: Open, end: TextRange) {
         self.balanced.is_open = true;
         if let Some(diagnostic) = open.stray.and_then(|stray| self.balanced.diagnostics.get_mut(stray)) {
             let stray = diagnostic.span();
@@ -51,7 +51,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    fn report_brace(&mut self, open: Open, at: Place, text: &str) {
+    fn report_brace(&mut self, open: Open, at: TextRange, text: &str) {
         let Some(place) = open.place else { return };
         let span = self.source.span(place);
         let diagnostic = Diagnostic::new(Code::E0103, "this `{` is never closed", span, "opened here");
@@ -59,14 +59,14 @@ impl Pass<'_, '_> {
     }
 
     /// Closes the brace that opens at the token with the index `brace`, and all brackets inside it.
-    pub(super) fn close_brace_of(&mut self, brace: usize, at: Place) {
+    pub(super) fn close_brace_of(&mut self, brace: usize, at: TextRange) {
         if let Some(depth) = self.open.iter().position(|open| open.raw == brace && open.kind == BracketKind::Brace) {
             self.close_down_to(depth, at);
         }
     }
 
     /// Closes all open brackets but the first `depth` before a token that seems to follow them.
-    pub(super) fn close_down_to(&mut self, depth: usize, at: Place) {
+    pub(super) fn close_down_to(&mut self, depth: usize, at: TextRange) {
         while let Some(open) = self.open.last().copied().filter(|_| self.open.len() > depth) {
             if open.kind == BracketKind::Brace {
                 self.force();

@@ -6,7 +6,7 @@ use super::super::header;
 use super::super::label::label;
 use super::super::lexer::{Lexed, lex};
 use super::super::printed;
-use super::super::source::{Place, Source};
+use super::super::source::{FileText, TextRange};
 use super::super::token::{Tok, Token};
 use super::comments::{Gap, gap};
 
@@ -43,18 +43,18 @@ pub(super) struct Pieces<'s>(Vec<Piece<'s>>);
 
 impl<'s> Pieces<'s> {
     /// Returns the pieces of a text without errors.
-    pub(super) fn of(source: Source<'s>) -> Self {
+    pub(super) fn of(source: FileText<'s>) -> Self {
         let mut lexed = lex(source);
         printed::read(&mut lexed);
         let Lexed { mut tokens, .. } = lexed;
         header::mark(&mut tokens);
         let end = source.text.len();
-        tokens.push(Token { kind: Tok::Comment, place: Place::new(end, end) });
+        tokens.push(Token { kind: Tok::Comment, place: TextRange::new(end, end) });
         let mut pieces: Vec<Piece<'s>> = Vec::with_capacity(tokens.len());
         let (mut behind, mut left, mut comments) = (0, 0, 0);
         for token in tokens {
             let Token { kind, place } = token;
-            let gap = gap(source.slice(Place::new(behind, place.start)));
+            let gap = gap(source.slice(TextRange::new(behind, place.start)));
             let is_glued = pieces.last().is_none_or(|before| touch(before.kind, kind));
             let text = text(source, token);
             left += usize::from(!is_glued);
@@ -120,7 +120,7 @@ impl<'s> Pieces<'s> {
 }
 
 /// Returns the printed form of a token: words and numbers as written, but without typesetting.
-fn text<'s>(source: Source<'s>, token: Token<'s>) -> Cow<'s, str> {
+fn text<'s>(source: FileText<'s>, token: Token<'s>) -> Cow<'s, str> {
     let written = source.slice(token.place);
     #[allow(clippy::wildcard_enum_match_arm, reason = "all others are written as they are")]
     Cow::Borrowed(match token.kind {

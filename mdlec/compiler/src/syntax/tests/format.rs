@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::super::format;
 use super::super::lexer::lex;
-use super::super::source::Source;
+use super::super::source::FileText;
 use super::super::token::Tok;
 use super::properties::config;
 use super::{Arena, listings, outline, parse};
@@ -200,7 +200,7 @@ const GAPS: &[&str] = &[
 
 /// Inserts gaps between the tokens of a text, except before parentheses that touch a name.
 fn odd(text: &str, gaps: &[(proptest::sample::Index, &str)]) -> String {
-    let tokens = lex(Source { id: SourceId(0), text }).tokens;
+    let tokens = lex(FileText { id: SourceId(0), text }).tokens;
     let mut places: Vec<_> = tokens.iter().filter(|token| token.kind != Tok::TouchParen).collect();
     let mut inserted: Vec<_> = gaps.iter().map(|(at, gap)| (at.get(&places).place.start, *gap)).collect();
     places.clear();

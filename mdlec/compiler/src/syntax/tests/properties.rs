@@ -6,7 +6,7 @@ use proptest::test_runner::RngSeed;
 use super::super::brackets::{MAX_DEPTH, balance};
 use super::super::format;
 use super::super::lexer::lex;
-use super::super::source::Source;
+use super::super::source::FileText;
 use super::super::token::Tok;
 use super::{Arena, outline, parse};
 use crate::diagnostic::{SourceId, Sources};
@@ -144,7 +144,7 @@ proptest! {
 
     #[test]
     fn brackets_match_after_the_pass(text in soup()) {
-        let source = Source { id: SourceId(0), text: &text };
+        let source = FileText { id: SourceId(0), text: &text };
         let balanced = balance(source, &lex(source));
         let mut open = Vec::new();
         for (at, token) in balanced.tokens.iter().enumerate() {
@@ -205,6 +205,6 @@ fn long_words_and_comments_take_no_stack() {
     // Half of the stack that a thread has by default.
     let thread = std::thread::Builder::new()
         .stack_size(1 << 20)
-        .spawn(move || texts.map(|text| lex(Source::new(SourceId(0), &text)).tokens.len()));
+        .spawn(move || texts.map(|text| lex(FileText::new(SourceId(0), &text)).tokens.len()));
     assert_eq!(thread.unwrap().join().unwrap(), [10, 10, 10, 10, 10, 10, 10, 10, 11, 13]);
 }

@@ -4,7 +4,7 @@ use mdle_runtime::{Nanometers, Nanos, TRANSITIONS_PER_TURN};
 
 use super::{Applied, Fired, NodeKind, Open, Read, Reports, Tree};
 use crate::diagnostic::Span;
-use crate::plan::{Condition, Part};
+use crate::plan::{Condition, PlanPart};
 
 /// A step of a turn.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,11 +78,11 @@ impl<'p> Tree<'p> {
 impl<'t, 'p> OpenPart<'t, 'p> {
     /// Returns the part of the plan that is open.
     #[must_use]
-    pub fn part(self) -> Part<'p> {
+    pub fn part(self) -> PlanPart<'p> {
         match self.tree.elements[self.open.element].kind {
-            NodeKind::Scope(scope) => Part::Scope(scope),
-            NodeKind::Loop(repeated) => Part::Loop(repeated),
-            NodeKind::Atom(atom) => Part::Atom(atom),
+            NodeKind::Scope(scope) => PlanPart::Scope(scope),
+            NodeKind::Loop(repeated) => PlanPart::Loop(repeated),
+            NodeKind::Atom(atom) => PlanPart::Atom(atom),
         }
     }
 

@@ -15,7 +15,7 @@ use mdle_host::{Interruption, Progress};
 use mdle_runtime::Nanos;
 
 use super::FAULT;
-use super::arguments::Options;
+use super::arguments::ScenarioOptions;
 use super::fleet::TIMED_OUT;
 use crate::failure::Failure;
 pub(super) use setup::CrowdSetup;
@@ -26,7 +26,7 @@ use turns::Turns;
 ///
 /// # Errors
 /// Fails if signals cannot be caught, or if a file cannot be written.
-pub(super) fn run(setup: CrowdSetup, options: &Options) -> Result<ExitCode, Failure> {
+pub(super) fn run(setup: CrowdSetup, options: &ScenarioOptions) -> Result<ExitCode, Failure> {
     let mut trail = options.trail.as_deref().map(Trail::create).transpose().map_err(Failure::Usage)?;
     let uncaught = |error| Failure::Usage(format!("signals cannot be caught: {error}"));
     let interruption = Interruption::listen().map_err(uncaught)?;

@@ -1,7 +1,7 @@
 //! The poses at which the robots of a crowd begin: the points of a lattice, each with a random heading.
 
 use mdle_runtime::{Meters, Pose, Radians};
-use mdle_sim::{Place, World};
+use mdle_sim::{Point, World};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
@@ -9,7 +9,7 @@ use super::super::file::ScenarioError;
 
 /// The points of a lattice over a world, row by row.
 pub(super) struct Places {
-    least: Place,
+    least: Point,
     columns: u64,
     count: u64,
     spacing: f64,
@@ -21,12 +21,12 @@ impl Places {
     /// Returns the lattice points between the walls of `world`; `seed` is the random seed of the headings.
     pub(super) fn of(world: &World, spacing: f64, seed: u64) -> Self {
         let points = || world.outlines.iter().flat_map(|outline| &outline.points);
-        let bound = |of: fn(&Place) -> f64, pick: fn(f64, f64) -> f64| points().map(of).reduce(pick).unwrap_or(0.0);
+        let bound = |of: fn(&Point) -> f64, pick: fn(f64, f64) -> f64| points().map(of).reduce(pick).unwrap_or(0.0);
         let (left, low) = (bound(|place| place.x, f64::min), bound(|place| place.y, f64::min));
         let (right, high) = (bound(|place| place.x, f64::max), bound(|place| place.y, f64::max));
         let along = |length: f64| libm::floor(length / spacing).max(0.0) as u64;
         let (columns, rows) = (along(right - left), along(high - low));
-        let least = Place { x: left + spacing / 2.0, y: low + spacing / 2.0 };
+        let least = Point { x: left + spacing / 2.0, y: low + spacing / 2.0 };
         let random = ChaCha8Rng::seed_from_u64(seed);
         Self { least, columns, count: columns.saturating_mul(rows), spacing, next: 0, random }
     }

@@ -10,7 +10,7 @@ use mdle_runtime::{Nanos, Plan as _};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Make, Sim, Simulated};
 
-use super::super::arguments::Options;
+use super::super::arguments::ScenarioOptions;
 use super::super::file::{At, CrowdText, ScenarioError, ScenarioText, duration};
 use super::super::files::Files;
 use super::super::records::begin;
@@ -46,7 +46,7 @@ impl CrowdSetup {
         crowd: &CrowdText,
         file: &ScenarioText,
         from: &Files,
-        options: &Options,
+        options: &ScenarioOptions,
     ) -> Result<Self, SetupError> {
         let count = *crowd.robots.get_ref();
         if !(1..=ROBOTS_MOST).contains(&count) {

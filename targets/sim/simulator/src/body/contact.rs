@@ -4,7 +4,7 @@
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::footprint::{Contact, Footprint};
-use crate::place::Place;
+use crate::place::Point;
 use crate::walls::Walls;
 
 /// Distance by which a slide moves away from the surface, in metres, so that rounding errors do not move the body into
@@ -16,13 +16,13 @@ const SLIDES: usize = 3;
 /// Returns the movement of `body` for the intended movement `way`: the whole movement if the path is free, otherwise
 /// the movement up to the contact and then along the surface. The movement must be shorter than the body; at its end,
 /// the body overlaps no obstacle.
-pub(crate) fn slid(body: &Footprint, way: Place, walls: &Walls) -> Place {
+pub(crate) fn slid(body: &Footprint, way: Point, walls: &Walls) -> Point {
     let at = body.at();
     let reach = libm::hypot(way.x, way.y) + LED_OFF;
-    let free = |place: Place| walls.gap(&moved(body, place), reach) >= 0.0;
+    let free = |place: Point| walls.gap(&moved(body, place), reach) >= 0.0;
     let (mut here, mut left) = (at, way);
     for _ in 0..SLIDES {
-        let there = |part: f64| Place { x: here.x + part * left.x, y: here.y + part * left.y };
+        let there = |part: f64| Point { x: here.x + part * left.x, y: here.y + part * left.y };
         if free(there(1.0)) {
             here = there(1.0);
             break;
@@ -31,9 +31,9 @@ pub(crate) fn slid(body: &Footprint, way: Place, walls: &Walls) -> Place {
         here = there(part);
         let Some(normal) = walls.contact(&moved(body, here), reach).and_then(normal) else { break };
         let into = ((1.0 - part) * (left.x * normal.x + left.y * normal.y)).min(0.0) - LED_OFF;
-        left = Place { x: (1.0 - part) * left.x - into * normal.x, y: (1.0 - part) * left.y - into * normal.y };
+        left = Point { x: (1.0 - part) * left.x - into * normal.x, y: (1.0 - part) * left.y - into * normal.y };
     }
-    Place { x: here.x - at.x, y: here.y - at.y }
+    Point { x: here.x - at.x, y: here.y - at.y }
 }
 
 /// Returns `body` turned by `turn`. If a corner or side would turn into an obstacle, the body is pushed away by the
@@ -49,23 +49,23 @@ pub(crate) fn turned(body: &Footprint, turn: Radians, walls: &Walls) -> Footprin
     // Twice the distance that a corner moves, because the side that turns into the obstacle may be slanted.
     let pushed = |part: f64| {
         let push = 2.0 * reach * part;
-        moved(&there, Place { x: there.pose.x.0 + push * normal.x, y: there.pose.y.0 + push * normal.y })
+        moved(&there, Point { x: there.pose.x.0 + push * normal.x, y: there.pose.y.0 + push * normal.y })
     };
     let free = |part: f64| walls.gap(&pushed(part), reach) >= 0.0;
     if free(1.0) { pushed(1.0 - last_free(|part| free(1.0 - part))) } else { *body }
 }
 
-fn moved(body: &Footprint, to: Place) -> Footprint {
+fn moved(body: &Footprint, to: Point) -> Footprint {
     Footprint { pose: Pose { x: Meters(to.x), y: Meters(to.y), ..body.pose }, ..*body }
 }
 
 /// Returns the unit vector away from the surface of a contact; `None` if the nearest points of body and surface
 /// coincide.
-fn normal(contact: Contact) -> Option<Place> {
+fn normal(contact: Contact) -> Option<Point> {
     let Contact { place, body, .. } = contact;
     let (x, y) = (body.x - place.x, body.y - place.y);
     let length = libm::hypot(x, y);
-    (length > 0.0).then(|| Place { x: x / length, y: y / length })
+    (length > 0.0).then(|| Point { x: x / length, y: y / length })
 }
 
 /// Returns the largest fraction of a step, to a millionth, after which the body is still free; 0 if no fraction is

@@ -4,7 +4,7 @@ use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::model::Slip;
 use crate::noise::{Noise, Purpose};
-use crate::place::Place;
+use crate::place::Point;
 
 /// Pose that the robot computes from the motion of its wheels, relative to the start pose.
 #[derive(Debug, Clone)]
@@ -51,7 +51,7 @@ impl Odometry {
     }
 
     /// Records that the body, of true heading `heading`, was moved by `way` and turned by `turn`.
-    pub(crate) fn carried(&mut self, heading: Radians, way: Place, turn: f64) {
+    pub(crate) fn carried(&mut self, heading: Radians, way: Point, turn: f64) {
         let (sin, cos) = libm::sincos(self.pose.theta.0 - heading.0);
         self.pose = Pose {
             x: Meters(self.pose.x.0 + (way.x * cos - way.y * sin)),

@@ -6,7 +6,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use mdle_runtime::Radians;
 
 use super::*;
-use crate::model::{self, Model, Part};
+use crate::model::{self, Model, ModelPart};
 use crate::noise::{Noise, Purpose};
 use crate::world::World;
 
@@ -100,7 +100,7 @@ fn never_overlaps_a_wall_and_odometry_stays_true() {
             let input = twist(0.5 + within(0.7), within(4.0));
             for _ in 0..5 {
                 body.advance(&input, 0.1, &walls);
-                assert!(walls.clearance(Place::of(&body.pose), 1.0) >= 0.205);
+                assert!(walls.clearance(Point::of(&body.pose), 1.0) >= 0.205);
                 // The body starts at the origin, so both poses have the same coordinates.
                 assert_eq!(body.pose, body.odometry());
                 pressed += u32::from(touches(&body, &walls));
@@ -179,7 +179,7 @@ fn nothing_is_passed_through_at_any_speed_and_period() {
             let mut within = |most: f64| most * (2.0 * random.uniform() - 1.0);
             let [x, y, along, up] = [within(2.0), within(2.0), within(1.5), within(1.5)];
             let wall = format!("[[wall]]\npoints = [[{x}, {y}], [{}, {}]]\n", x + along, y + up);
-            if walls(&wall).clearance(Place { x: 0.0, y: 0.0 }, 1.0) > 0.45 {
+            if walls(&wall).clearance(Point { x: 0.0, y: 0.0 }, 1.0) > 0.45 {
                 text += &wall;
             }
         }
@@ -216,6 +216,6 @@ fn a_seed_makes_odometry_drift_as_far_as_its_model_says() {
     let heading = libm::sqrt((slip.bend * way) * (slip.bend * way) + slip.wander * slip.wander * way);
     assert!((spread(&ways) / slip.way - 1.0).abs() < 0.15, "{}", spread(&ways));
     assert!((spread(&headings) / heading - 1.0).abs() < 0.15, "{} {heading}", spread(&headings));
-    let exact = Body::new(Model::of(model::Body::Scout, &[Part::Slip]).drive, Pose::ORIGIN, Some(1));
+    let exact = Body::new(Model::of(model::Body::Scout, &[ModelPart::Slip]).drive, Pose::ORIGIN, Some(1));
     assert_eq!(exact.odometry(), Pose::ORIGIN);
 }

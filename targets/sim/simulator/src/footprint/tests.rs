@@ -4,7 +4,7 @@ use mdle_runtime::Meters;
 
 use super::*;
 
-const HERE: Place = Place { x: 0.0, y: 0.0 };
+const HERE: Point = Point { x: 0.0, y: 0.0 };
 const DISC: Footprint = Footprint { pose: pose(2.0, 0.0), form: Form::Disc { radius: 0.5 } };
 /// Rectangle that is 1 m long and 0.6 m wide.
 const FORM: Form = Form::Rectangle { half_length: 0.5, half_width: 0.3 };
@@ -17,8 +17,8 @@ fn rectangle(x: f64, degrees: f64) -> Footprint {
     Footprint { pose: Pose { theta: Radians::from_degrees(degrees), ..pose(x, 0.0) }, form: FORM }
 }
 
-fn place(x: f64, y: f64) -> Place {
-    Place { x, y }
+fn place(x: f64, y: f64) -> Point {
+    Point { x, y }
 }
 
 fn is_near(one: f64, other: f64) -> bool {

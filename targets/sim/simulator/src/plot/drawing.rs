@@ -13,7 +13,7 @@ use super::shapes::{Pixel, RADIUS, badge, circle, cross, dots, line, simplified,
 use super::sizes::{LEFT, MARGIN};
 use super::{floor, labels, legend, things};
 use crate::footprint::{Footprint, Form};
-use crate::place::Place;
+use crate::place::Point;
 use crate::trail::{Companion, Trail};
 use crate::world::World;
 
@@ -60,7 +60,7 @@ fn echoes(layout: &Layout, trail: &Trail) -> Path {
 
 /// Draws the path driven by each atom of the plan's text; one SVG path contains all passes of the atom.
 fn way(layout: &Layout, trail: &Trail) -> Group {
-    let data = |way: &[Place]| through(simplified(way.iter().map(|place| layout.at(*place))));
+    let data = |way: &[Point]| through(simplified(way.iter().map(|place| layout.at(*place))));
     let ways = &trail.ways;
     let mut before = data(&ways.before);
     let mut atoms = vec![String::new(); ways.atoms.len()];
@@ -76,8 +76,8 @@ fn way(layout: &Layout, trail: &Trail) -> Group {
 
 /// Draws the body: a disc or rectangle with a line to its front.
 pub(super) fn body(layout: &Layout, pose: &Pose, form: Form, class: &str) -> Group {
-    let centre = layout.at(Place::of(pose));
-    let front = layout.at(Place::of(&pose.towards(pose.theta, Meters(form.halves().0))));
+    let centre = layout.at(Point::of(pose));
+    let front = layout.at(Point::of(&pose.towards(pose.theta, Meters(form.halves().0))));
     let group = Group::new().set("class", class).set("stroke-width", 1.2);
     let group = match form {
         Form::Disc { radius } => group.add(circle(centre, radius * layout.scale).set("fill", "none")),

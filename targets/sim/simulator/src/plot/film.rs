@@ -4,8 +4,8 @@ use mdle_runtime::Nanos;
 use svg::node::element::{Animate, AnimateTransform};
 
 use super::layout::round_step;
-use crate::frames::Frame;
-use crate::place::Place;
+use crate::frames::FilmFrame;
+use crate::place::Point;
 use crate::trail::{Mark, Trail};
 
 /// Maximum duration of the film, in seconds, without the pause at the end.
@@ -21,7 +21,7 @@ const REST: f64 = 2.5;
 /// A film of a run.
 pub(super) struct Film<'f> {
     /// Frames of the run.
-    pub(super) frames: &'f [Frame],
+    pub(super) frames: &'f [FilmFrame],
     /// Runs of atoms in the film, in order.
     pub(super) acts: Vec<Act>,
     /// Factor by which the film is faster than the run.
@@ -44,7 +44,7 @@ pub(super) struct Act {
 
 impl<'f> Film<'f> {
     /// Returns the film of these frames of `trail`.
-    pub(super) fn of(frames: &'f [Frame], trail: &Trail) -> Self {
+    pub(super) fn of(frames: &'f [FilmFrame], trail: &Trail) -> Self {
         let marks = &trail.ways.marks;
         let mut acts: Vec<Act> = Vec::new();
         let mut begun = 0;
@@ -84,13 +84,13 @@ impl<'f> Film<'f> {
     }
 
     /// Returns the frames of an act.
-    pub(super) fn of_act(&self, act: &Act) -> &'f [Frame] {
+    pub(super) fn of_act(&self, act: &Act) -> &'f [FilmFrame] {
         self.frames.get(act.first..=act.last).unwrap_or_default()
     }
 
     /// Returns the path driven in an act, followed by the paths of the runs omitted after it; `None` before the first
     /// atom, or if the whole path is too long to be drawn position by position.
-    pub(super) fn way(&self, act: &Act, trail: &Trail) -> Option<Vec<Place>> {
+    pub(super) fn way(&self, act: &Act, trail: &Trail) -> Option<Vec<Point>> {
         let first = act.mark?;
         let next = self.acts.get(self.acts.partition_point(|other| other.mark <= act.mark)).and_then(|next| next.mark);
         let marks = trail.ways.marks.get(first..next.unwrap_or(trail.ways.marks.len())).filter(|_| self.smooth)?;

@@ -7,7 +7,7 @@ use super::shapes::{Pixel, circle, line, polyline, tenths, text, through};
 use super::sizes::{LEFT, MARGIN};
 use crate::goal::Zone;
 use crate::outline::Outline;
-use crate::place::Place;
+use crate::place::Point;
 use crate::world::World;
 
 /// Minimum distance between two labels of an axis, in pixels.
@@ -46,12 +46,12 @@ fn axes(layout: &Layout) -> Group {
     let mut grid = Group::new().set("class", "grid");
     let mut numbers = Group::new().set("font-size", 12);
     for x in multiples(layout.view.x, step) {
-        let (at, _) = layout.at(Place { x, y: 0.0 });
+        let (at, _) = layout.at(Point { x, y: 0.0 });
         grid = grid.add(line((at, top), (at, bottom)));
         numbers = numbers.add(text(&number(x, step), (at, bottom + 13.0), "middle"));
     }
     for y in multiples(layout.view.y, step) {
-        let (_, at) = layout.at(Place { x: 0.0, y });
+        let (_, at) = layout.at(Point { x: 0.0, y });
         grid = grid.add(line((left, at), (right, at)));
         numbers = numbers.add(text(&number(y, step), (left - 8.0, at), "end"));
     }
@@ -90,8 +90,8 @@ fn walls(layout: &Layout, world: &World) -> Group {
     let mut group = Group::new();
     match world.goal.map(|goal| goal.zone) {
         Some(Zone::Rectangle { min, max }) => {
-            let (left, top) = layout.at(Place { x: min.x, y: max.y });
-            let (right, bottom) = layout.at(Place { x: max.x, y: min.y });
+            let (left, top) = layout.at(Point { x: min.x, y: max.y });
+            let (right, bottom) = layout.at(Point { x: max.x, y: min.y });
             let zone = Rectangle::new().set("x", tenths(left)).set("y", tenths(top));
             let zone = zone.set("width", tenths(right - left)).set("height", tenths(bottom - top));
             group = group.add(zone.set("class", "goal"));
@@ -102,7 +102,7 @@ fn walls(layout: &Layout, world: &World) -> Group {
         None => {}
     }
     if let Some(charger) = &world.charger {
-        group = group.add(socket(charger.circle().map(|place| layout.at(place)), layout.at(Place::of(&charger.pose))));
+        group = group.add(socket(charger.circle().map(|place| layout.at(place)), layout.at(Point::of(&charger.pose))));
     }
     // Combines all outlines in few paths: a map has many, and viewers draw few long paths faster than many short ones.
     let (contours, outlines) = world.outlines.split_at(world.contours.min(world.outlines.len()));

@@ -5,7 +5,7 @@ use super::shapes::Pixel;
 use super::sizes::{LEFT, LETTER, LETTERS, MARGIN};
 use super::title::Title;
 use super::view::{View, range};
-use crate::place::Place;
+use crate::place::Point;
 use crate::trail::Trail;
 use crate::world::World;
 
@@ -69,13 +69,13 @@ impl Layout {
     }
 
     /// Returns the pixel of a place on the floor.
-    pub(super) fn at(&self, place: Place) -> Pixel {
+    pub(super) fn at(&self, place: Point) -> Pixel {
         let View { x, y } = self.view;
         (MARGIN + LEFT + (place.x - x.0) * self.scale, self.top + (y.1 - place.y) * self.scale)
     }
 
     /// Returns `true` if an object between these places may be visible.
-    pub(super) fn shows_any(&self, places: impl Iterator<Item = Place>) -> bool {
+    pub(super) fn shows_any(&self, places: impl Iterator<Item = Point>) -> bool {
         let overlaps = |one: (f64, f64), other: (f64, f64)| one.0 <= other.1 && other.0 <= one.1;
         let (x, y): (Vec<f64>, Vec<f64>) = places.map(|place| (place.x, place.y)).unzip();
         overlaps(range(x.into_iter()), self.view.x) && overlaps(range(y.into_iter()), self.view.y)
@@ -155,7 +155,7 @@ mod tests {
             assert!(layout.height.is_finite() && layout.height < 1250.0, "{layout:?}");
             assert!(layout.width() < 1700.0, "{layout:?}");
             for place in
-                [Place { x: layout.view.x.0, y: layout.view.y.0 }, Place { x: layout.view.x.1, y: layout.view.y.1 }]
+                [Point { x: layout.view.x.0, y: layout.view.y.0 }, Point { x: layout.view.x.1, y: layout.view.y.1 }]
             {
                 let (x, y) = layout.at(place);
                 assert!((MARGIN + LEFT - 0.1..=layout.chart - MARGIN + 0.1).contains(&x), "{x} in {layout:?}");

@@ -15,8 +15,8 @@ use super::sizes::MARGIN;
 use super::strip::{STRIP, strip};
 use super::{floor, legend, things};
 use crate::footprint::Form;
-use crate::frames::{Frame, Frames};
-use crate::place::Place;
+use crate::frames::{FilmFrame, Frames};
+use crate::place::Point;
 use crate::trail::Trail;
 use crate::world::World;
 
@@ -48,7 +48,7 @@ fn ways(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     let group = Group::new().set("stroke-width", 2.5).set("stroke-linejoin", "round").set("fill", "none");
     film.acts.iter().fold(group, |group, act| {
         let frames = film.of_act(act);
-        let moments: Vec<Pixel> = frames.iter().map(|frame| layout.at(Place::of(&frame.pose))).collect();
+        let moments: Vec<Pixel> = frames.iter().map(|frame| layout.at(Point::of(&frame.pose))).collect();
         let at_moments = lengths(&moments);
         // The recorded path has more positions than the frames.
         let driven: Option<Vec<Pixel>> =
@@ -83,7 +83,7 @@ fn lengths(pixels: &[Pixel]) -> Vec<f64> {
 
 /// Draws the echoes of each frame.
 fn echoes(layout: &Layout, film: &Film<'_>) -> Path {
-    let heard = |frame: &Frame| {
+    let heard = |frame: &FilmFrame| {
         let shown = frame.echoes.iter().flatten().filter(|place| layout.shows_any([**place].into_iter()));
         let data = dots(shown.map(|place| layout.at(*place)));
         if data.is_empty() { "m0 0".to_owned() } else { data }
@@ -107,7 +107,7 @@ fn contacts(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
 /// Draws the body, with animations of its position and heading.
 fn robot(layout: &Layout, film: &Film<'_>, trail: &Trail) -> Group {
     let at = |pose: &Pose| {
-        let (x, y) = layout.at(Place::of(pose));
+        let (x, y) = layout.at(Point::of(pose));
         format!("{} {}", tenths(x), tenths(y))
     };
     let places = film.frames.iter().map(|frame| (frame.t, at(&frame.pose)));

@@ -5,8 +5,8 @@ use svg::parser::Event;
 
 use super::{animated, svg};
 use crate::footprint::{Footprint, Form};
-use crate::frames::{Frame, Frames};
-use crate::place::Place;
+use crate::frames::{FilmFrame, Frames};
+use crate::place::Point;
 use crate::trail::Trail;
 use crate::world::World;
 
@@ -18,17 +18,17 @@ fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
         let (t, angle) = (Nanos(turn * 100_000_000), turn as f64 * 0.05);
         let (x, y) = (Meters(2.0 * libm::sin(angle)), Meters(2.0 - 2.0 * libm::cos(angle)));
         trail.went(&Pose { x, y, theta: Radians(angle).wrapped() });
-        let echo = Place { x: x.0 * 1.5, y: y.0 * 1.5 };
+        let echo = Point { x: x.0 * 1.5, y: y.0 * 1.5 };
         let mut echoes = [None; SONARS];
         echoes[0] = Some(echo);
         trail.echoes.push(echo);
-        let frame = Frame { t, pose: trail.here, echoes, things: Vec::new() };
+        let frame = FilmFrame { t, pose: trail.here, echoes, things: Vec::new() };
         trail.frames.as_mut().unwrap().push(frame);
         if turn % an_atom_every == 0 {
             trail.began(turn / an_atom_every + 1, law, t);
         }
         if turn % 700 == 500 {
-            trail.contacts.push((Place::of(&trail.here), t));
+            trail.contacts.push((Point::of(&trail.here), t));
         }
     }
     trail
@@ -86,7 +86,7 @@ fn passes(passes: u64) -> Trail {
     for turn in 0..30 * passes {
         trail.went(&Pose { x: Meters(turn as f64 * 0.02), ..Pose::ORIGIN });
         let t = Nanos(turn * 100_000_000);
-        let frame = Frame { t, pose: trail.here, echoes: [None; SONARS], things: Vec::new() };
+        let frame = FilmFrame { t, pose: trail.here, echoes: [None; SONARS], things: Vec::new() };
         trail.frames.as_mut().unwrap().push(frame);
         trail.ways.passed(t);
         if turn % 10 == 0 {
@@ -193,12 +193,12 @@ fn what_moves_is_drawn_where_it_is_and_moves_in_a_record() {
     let mut trail = run(41, 10, "stop");
     trail.frames = Some(Frames::new());
     for turn in 0..41_u64 {
-        let gone = Place { x: turn as f64 * 0.05, y: 0.0 };
-        let door = (!(10..20).contains(&turn)).then_some(Place { x: 0.0, y: 0.0 });
+        let gone = Point { x: turn as f64 * 0.05, y: 0.0 };
+        let door = (!(10..20).contains(&turn)).then_some(Point { x: 0.0, y: 0.0 });
         // The order of moving objects: boxes and discs first, doors last.
-        trail.things = vec![Some(Place { x: 0.0, y: 0.0 }), Some(gone), door];
+        trail.things = vec![Some(Point { x: 0.0, y: 0.0 }), Some(gone), door];
         let things = trail.things.clone();
-        let frame = Frame { t: Nanos(turn * 100_000_000), pose: trail.here, echoes: [None; SONARS], things };
+        let frame = FilmFrame { t: Nanos(turn * 100_000_000), pose: trail.here, echoes: [None; SONARS], things };
         trail.frames.as_mut().unwrap().push(frame);
     }
     let (plot, record) = (svg(&world, &trail), animated(&world, &trail));

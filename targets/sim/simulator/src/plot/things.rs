@@ -6,16 +6,16 @@ use svg::node::element::{Group, Path};
 use super::film::{Film, changes};
 use super::layout::Layout;
 use super::shapes::{Pixel, polyline, tenths};
-use crate::frames::Frame;
+use crate::frames::FilmFrame;
 use crate::moving::{Schedule, Thing};
-use crate::place::Place;
+use crate::place::Point;
 use crate::trail::Trail;
 use crate::world::World;
 
 /// Dash pattern of doors.
 const DASHES: &str = "5 4";
 /// Displacement of an object that has not moved.
-const NOWHERE: Place = Place { x: 0.0, y: 0.0 };
+const NOWHERE: Point = Point { x: 0.0, y: 0.0 };
 
 /// A symbol that the legend explains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,18 +72,18 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
 pub(super) fn moving(layout: &Layout, world: &World, trail: &Trail, film: &Film<'_>) -> Group {
     let things = world.things.iter().zip(&trail.things).enumerate();
     things.fold(ways(layout, world), |group, (number, (thing, end))| {
-        let gone = |frame: &Frame| frame.things.get(number).copied().flatten();
+        let gone = |frame: &FilmFrame| frame.things.get(number).copied().flatten();
         match Sign::of(thing) {
             Sign::Door => {
-                let seen = |gone: Option<Place>| if gone.is_some() { "visible" } else { "hidden" };
+                let seen = |gone: Option<Point>| if gone.is_some() { "visible" } else { "hidden" };
                 let values = film.frames.iter().map(|frame| (frame.t, seen(gone(frame)).to_owned()));
                 let closed = polyline(pixels(layout, thing, NOWHERE)).set("class", "ink").set("stroke-width", 3);
                 let closed = closed.set("visibility", seen(*end)).add(film.switch("visibility", changes(values)));
                 group.add(door(pixels(layout, thing, NOWHERE))).add(closed)
             }
             Sign::Moves => {
-                let by = |gone: Option<Place>| {
-                    let Place { x, y } = gone.unwrap_or(NOWHERE);
+                let by = |gone: Option<Point>| {
+                    let Point { x, y } = gone.unwrap_or(NOWHERE);
                     format!("{} {}", tenths(x * layout.scale), tenths(-y * layout.scale))
                 };
                 let values = film.frames.iter().map(|frame| (frame.t, by(gone(frame))));
@@ -95,7 +95,7 @@ pub(super) fn moving(layout: &Layout, world: &World, trail: &Trail, film: &Film<
     })
 }
 
-fn pixels(layout: &Layout, thing: &Thing, gone: Place) -> impl Iterator<Item = Pixel> {
+fn pixels(layout: &Layout, thing: &Thing, gone: Point) -> impl Iterator<Item = Pixel> {
     thing.corners(gone).map(|place| layout.at(place))
 }
 

@@ -9,7 +9,7 @@ use super::layout::round_step;
 use super::shapes::{Pixel, circle, line, polyline, simplified, tenths, text};
 use super::sizes::MARGIN;
 use super::view::range;
-use crate::place::Place;
+use crate::place::Point;
 
 /// Width of a picture, in pixels.
 const WIDTH: f64 = 960.0;
@@ -41,14 +41,14 @@ pub struct TripDrawing {
 #[derive(Debug, Clone)]
 struct RobotTrips {
     name: String,
-    trips: Vec<Vec<Place>>,
+    trips: Vec<Vec<Point>>,
     /// `true` while `path` or `Follow` runs.
     is_on_trip: bool,
 }
 
 /// Returns the length of a path, in metres, and the percentage by which it exceeds the distance between its ends.
-fn figures(way: &[Place]) -> (f64, f64) {
-    let apart = |one: &Place, other: &Place| libm::hypot(one.x - other.x, one.y - other.y);
+fn figures(way: &[Point]) -> (f64, f64) {
+    let apart = |one: &Point, other: &Point| libm::hypot(one.x - other.x, one.y - other.y);
     let length: f64 = way.windows(2).map(|pair| apart(&pair[0], &pair[1])).sum();
     let chord = way.first().zip(way.last()).map_or(0.0, |(first, last)| apart(first, last));
     (length, (length / chord.max(f64::MIN_POSITIVE) - 1.0) * 100.0)
@@ -71,13 +71,13 @@ impl TripDrawing {
         let is_trip = law.starts_with("path ") || law.starts_with("Follow ");
         let has_ended = robot.is_on_trip && (begins || !is_trip);
         if let Some(trip) = robot.trips.last_mut().filter(|_| robot.is_on_trip) {
-            trip.push(Place::of(pose));
+            trip.push(Point::of(pose));
         }
         if has_ended && robot.trips.last().is_some_and(|trip| figures(trip).0 < SHORTEST) {
             robot.trips.pop();
         }
         if is_trip && (begins || !robot.is_on_trip) {
-            robot.trips.push(vec![Place::of(pose)]);
+            robot.trips.push(vec![Point::of(pose)]);
         }
         robot.is_on_trip = is_trip;
     }
@@ -120,7 +120,7 @@ impl Floor {
     }
 
     /// Returns the pixel of a point of the floor; `top` is the height of the floor's upper edge.
-    fn at(&self, place: &Place, top: f64) -> Pixel {
+    fn at(&self, place: &Point, top: f64) -> Pixel {
         (MARGIN + SIDES.0 + (place.x - self.x.0) * self.scale, top + (self.y.1 - place.y) * self.scale)
     }
 
@@ -145,7 +145,7 @@ impl Floor {
 
     fn axes(&self, top: f64) -> Group {
         let step = round_step(APART / self.scale);
-        let corner = |x: f64, y: f64| self.at(&Place { x, y }, top);
+        let corner = |x: f64, y: f64| self.at(&Point { x, y }, top);
         let mut group = Group::new().set("font-size", 12);
         let multiples = |(least, most): (f64, f64)| {
             let (first, last) = (libm::ceil(least / step) as i64, libm::floor(most / step) as i64);
@@ -179,7 +179,7 @@ fn circles(pixels: &[Pixel]) -> Group {
 }
 
 /// Draws the entry of a trip in the list.
-fn listed(number: usize, trip: &[Place], (x, y): Pixel) -> Group {
+fn listed(number: usize, trip: &[Point], (x, y): Pixel) -> Group {
     let (length, excess) = figures(trip);
     let words = format!("trip {}: {length:.2} m, {excess:.1} % longer", number + 1);
     let sample = Path::new().set("d", format!("M{} {}h18", tenths(x), tenths(y)));

@@ -40,7 +40,7 @@ fn what_is_black_stands_where_the_header_says() {
     let corners: Vec<_> = world.outlines.iter().map(|outline| outline.points.len()).collect();
     assert_eq!(corners, [5, 5], "one line outside and one inside");
     let walls = Walls::of(&world);
-    let ray = |degrees: f64| walls.ray(Place { x: 0.0, y: 0.0 }, Radians::from_degrees(degrees), 10.0).expect("a wall");
+    let ray = |degrees: f64| walls.ray(Point { x: 0.0, y: 0.0 }, Radians::from_degrees(degrees), 10.0).expect("a wall");
     let near = |one: f64, other: f64| (one - other).abs() < 1e-9;
     assert!(near(ray(0.0), 3.9) && near(ray(90.0), 1.9) && near(ray(180.0), 0.9) && near(ray(270.0), 1.9));
     let start = |x, y| {

@@ -13,7 +13,7 @@ use mdle_runtime::Radians;
 
 use crate::footprint::Footprint;
 use crate::model::Hearing;
-use crate::place::Place;
+use crate::place::Point;
 use crate::surfaces::{Surface, dot};
 use crate::walls::{Reached, Walls};
 
@@ -38,7 +38,7 @@ const OFF: f64 = 1e-6;
 
 /// Returns the distance, in metres, from a transducer to the nearest object that it hears in its cone; `None` if it
 /// hears no object. `fade` is the gain or loss of loudness of this ping.
-pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
+pub(crate) fn echo(walls: &Walls, from: Point, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
     let spread = (0..RAYS).map(|ray| hearing.half_cone.0 * (2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0));
     let others = walls.others_in(from, axis, hearing.half_cone);
     // A ray that leaves a corner continues for a fraction of its range.
@@ -52,7 +52,7 @@ pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing,
     for off_axis in spread.chain(aimed.filter(|off_axis| off_axis.abs() < hearing.half_cone.0)) {
         let most = best.unwrap_or(hearing.most);
         let (sin, cos) = libm::sincos(axis.0 + off_axis);
-        let way = Place { x: cos, y: sin };
+        let way = Point { x: cos, y: sin };
         let heard = if hearing.lobe.is_none() && hearing.facing.is_none() {
             walls.cast_among(reached, from, way, most)
         } else {
@@ -72,8 +72,8 @@ pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing,
 /// ray before it hits the surface.
 fn heard(
     walls: (&Walls, Reached<'_>),
-    from: Place,
-    way: Place,
+    from: Point,
+    way: Point,
     surface: &Surface,
     hearing: &Hearing,
     lost: f64,
@@ -94,9 +94,9 @@ fn heard(
 
 /// Returns the range of the corner to which this surface belongs; `None` if no corner reflects the ray back. `bounced`
 /// contains the obstacles that the ray may hit after it has left the surface.
-fn corner((walls, bounced): (&Walls, Reached<'_>), from: Place, way: Place, first: &Surface) -> Option<f64> {
+fn corner((walls, bounced): (&Walls, Reached<'_>), from: Point, way: Point, first: &Surface) -> Option<f64> {
     let on = reflected(way, first.normal);
-    let bounce = Place {
+    let bounce = Point {
         x: from.x + first.range * way.x + OFF * first.normal.x,
         y: from.y + first.range * way.y + OFF * first.normal.y,
     };
@@ -104,11 +104,11 @@ fn corner((walls, bounced): (&Walls, Reached<'_>), from: Place, way: Place, firs
     if dot(reflected(on, second.normal), way) > BACK {
         return None;
     }
-    let end = Place { x: bounce.x + second.range * on.x, y: bounce.y + second.range * on.y };
+    let end = Point { x: bounce.x + second.range * on.x, y: bounce.y + second.range * on.y };
     Some((first.range + second.range + crate::surfaces::apart(end, from)) / 2.0)
 }
 
-fn reflected(way: Place, normal: Place) -> Place {
+fn reflected(way: Point, normal: Point) -> Point {
     let along = 2.0 * dot(way, normal);
-    Place { x: way.x - along * normal.x, y: way.y - along * normal.y }
+    Point { x: way.x - along * normal.x, y: way.y - along * normal.y }
 }

@@ -3,7 +3,7 @@
 use mdle_runtime::SonarId;
 
 use super::*;
-use crate::model::{Body, Model, Part};
+use crate::model::{Body, Model, ModelPart};
 use crate::world::World;
 
 fn walls(text: &str) -> Walls {
@@ -11,7 +11,7 @@ fn walls(text: &str) -> Walls {
 }
 
 /// Returns a ring without errors that has pinged at the origin, once or in its firing order.
-fn pinged(body: Body, without: &[Part], text: &str) -> Ring {
+fn pinged(body: Body, without: &[ModelPart], text: &str) -> Ring {
     let mut ring = Ring::new(Model::of(body, without).hearing, None);
     let walls = walls(text);
     match ring.due() {
@@ -89,7 +89,7 @@ fn a_seed_makes_the_noise_that_it_says_it_does() {
 }
 
 /// Returns the maximum angle off its normal, in degrees, at which a wall `distance` metres ahead is heard.
-fn last_heard(distance: f64, without: &[Part]) -> u32 {
+fn last_heard(distance: f64, without: &[ModelPart]) -> u32 {
     (0..80)
         .take_while(|degrees| range(&pinged(Body::Scout, without, &turned(distance, f64::from(*degrees))), 0).is_some())
         .count() as u32
@@ -100,9 +100,9 @@ fn last_heard(distance: f64, without: &[Part]) -> u32 {
 fn a_flat_wall_answers_up_to_forty_degrees_or_so() {
     assert!((39..=42).contains(&last_heard(1.0, &[])), "{}", last_heard(1.0, &[]));
     assert!((24..=30).contains(&last_heard(6.0, &[])), "{}", last_heard(6.0, &[]));
-    assert!(last_heard(1.0, &[Part::Specular]) > 70);
+    assert!(last_heard(1.0, &[ModelPart::Specular]) > 70);
     // Both the outermost ray of the cone and the limit on the normal's angle count.
-    assert!((45..=49).contains(&last_heard(1.0, &[Part::Lobe])), "{}", last_heard(1.0, &[Part::Lobe]));
+    assert!((45..=49).contains(&last_heard(1.0, &[ModelPart::Lobe])), "{}", last_heard(1.0, &[ModelPart::Lobe]));
 }
 
 /// Returns the maximum angle off its normal, in degrees, at which a wall with this roughness 1 m ahead is heard.
@@ -179,7 +179,8 @@ fn ranges_come_in_whole_inches_from_six_on() {
     let wall = |x: f64| range(&pinged(Body::Scout, &[], &format!("[[wall]]\npoints = [[{x}, -1], [{x}, 1]]")), 0);
     assert_eq!(wall(0.19 + 0.0254 * 40.5), Some(40.0 * 0.0254));
     assert_eq!(wall(0.22), Some(6.0 * 0.0254));
-    let exact = pinged(Body::Scout, &[Part::Steps, Part::Minimum], "[[wall]]\npoints = [[0.22, -1], [0.22, 1]]");
+    let exact =
+        pinged(Body::Scout, &[ModelPart::Steps, ModelPart::Minimum], "[[wall]]\npoints = [[0.22, -1], [0.22, 1]]");
     assert!((range(&exact, 0).expect("a wall") - 0.03).abs() < 1e-9);
 }
 
@@ -219,7 +220,7 @@ fn sonars_ping_in_the_order_that_is_asked_for() {
 #[test]
 fn an_atrv_has_all_sixteen_directions_from_its_twenty_four() {
     let around = "[[box]]\nmin = [-1.5, -1.5]\nmax = [1.5, 1.5]";
-    let ring = pinged(Body::Atrv, &[Part::Specular], around);
+    let ring = pinged(Body::Atrv, &[ModelPart::Specular], around);
     for sonar in 0..16 {
         let heard = range(&ring, sonar).expect("a wall on every side") + 0.28;
         assert!((1.4..2.2).contains(&heard), "sonar {sonar}: {heard}");
@@ -237,7 +238,7 @@ fn a_ping_lies_on_the_axis_of_its_transducer() {
         let ping = pings.newest_first().next().expect("a ping");
         let Some(Meters(range)) = ping.range else { continue };
         let axis = ping.axis(SonarId::new(number));
-        let place = Place::of(&axis.towards(axis.theta, Meters(0.28 + range)));
+        let place = Point::of(&axis.towards(axis.theta, Meters(0.28 + range)));
         let is_there = |(transducer, heard): (&Transducer, &Heard)| {
             let (sin, cos) = libm::sincos(transducer.bearing.0);
             let Some(Meters(range)) = heard.range.filter(|_| transducer.sonar.number() == number.into()) else {

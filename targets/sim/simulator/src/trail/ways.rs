@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use mdle_runtime::Nanos;
 
-use crate::place::Place;
+use crate::place::Point;
 
 /// Minimum distance between two stored positions, in metres; a smaller distance is less than a pixel.
 const APART: f64 = 0.01;
@@ -18,7 +18,7 @@ const MARKS_MOST: usize = 10_000;
 #[derive(Debug, Clone)]
 pub(crate) struct Ways {
     /// Path driven before the first atom began.
-    pub(crate) before: Vec<Place>,
+    pub(crate) before: Vec<Point>,
     /// Passes of atoms, in order.
     pub(crate) marks: Vec<Mark>,
     /// Atoms of the plan's text, in the order in which they first began.
@@ -44,7 +44,7 @@ pub(crate) struct Atom {
     pub(crate) number: u64,
     pub(crate) law: String,
     /// Position where the atom first began.
-    pub(crate) place: Place,
+    pub(crate) place: Point,
     /// Number of times that the atom began.
     pub(crate) times: u64,
     /// Total time for which the atom ran.
@@ -58,12 +58,12 @@ pub(crate) struct Mark {
     pub(crate) atom: Option<usize>,
     pub(crate) t: Nanos,
     /// Path driven, from the position where the pass began.
-    pub(crate) way: Vec<Place>,
+    pub(crate) way: Vec<Point>,
 }
 
 impl Ways {
     /// Returns a path that begins at `place`.
-    pub(super) fn from(place: Place) -> Self {
+    pub(super) fn from(place: Point) -> Self {
         Self {
             before: vec![place],
             marks: Vec::new(),
@@ -77,7 +77,7 @@ impl Ways {
     }
 
     /// Records that the robot is at `place`.
-    pub(super) fn went(&mut self, place: Place) {
+    pub(super) fn went(&mut self, place: Point) {
         let apart = self.apart;
         let way = self.last();
         if way.last().is_none_or(|last| libm::hypot(last.x - place.x, last.y - place.y) >= apart) {
@@ -90,14 +90,14 @@ impl Ways {
     }
 
     /// Adds the path that a robot of a fleet has driven, up to the time `until`.
-    pub(crate) fn drove(&mut self, number: u64, name: &str, way: &[Place], until: Nanos) {
+    pub(crate) fn drove(&mut self, number: u64, name: &str, way: &[Point], until: Nanos) {
         let Some(place) = way.first().copied() else { return };
         self.marks.push(Mark { atom: Some(self.atoms.len()), t: Nanos::ZERO, way: way.to_vec() });
         self.atoms.push(Atom { number, law: name.to_owned(), place, times: 1, total: until });
     }
 
     /// Returns the path of the current pass.
-    fn last(&mut self) -> &mut Vec<Place> {
+    fn last(&mut self) -> &mut Vec<Point> {
         self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way)
     }
 
@@ -117,7 +117,7 @@ impl Ways {
     }
 
     /// Records that an atom begins at `place`.
-    pub(super) fn began(&mut self, number: u64, law: &str, t: Nanos, place: Place) {
+    pub(super) fn began(&mut self, number: u64, law: &str, t: Nanos, place: Point) {
         self.passed(t);
         let atom = self.atom(number, law, place);
         self.running = atom.map(|atom| (atom, t));
@@ -140,7 +140,7 @@ impl Ways {
     }
 
     /// Returns the index of an atom in `atoms`, and appends the atom if it is new; `None` if the list is full.
-    fn atom(&mut self, number: u64, law: &str, place: Place) -> Option<usize> {
+    fn atom(&mut self, number: u64, law: &str, place: Point) -> Option<usize> {
         let next = self.atoms.len();
         let key = (number, law.to_owned());
         let found = self.by_number.get(&key).copied();
@@ -170,7 +170,7 @@ impl Ways {
     }
 
     /// Returns all recorded places.
-    pub(super) fn places(&self) -> impl Iterator<Item = Place> {
+    pub(super) fn places(&self) -> impl Iterator<Item = Point> {
         self.before.iter().chain(self.marks.iter().flat_map(|mark| &mark.way)).copied()
     }
 }
@@ -185,9 +185,9 @@ mod tests {
 
     #[test]
     fn passes_of_an_atom_are_counted_and_timed_together() {
-        let mut ways = Ways::from(Place { x: 0.0, y: 0.0 });
+        let mut ways = Ways::from(Point { x: 0.0, y: 0.0 });
         for pass in 0..3 {
-            let place = Place { x: pass as f64, y: 0.0 };
+            let place = Point { x: pass as f64, y: 0.0 };
             ways.began(1, "go 20 0", seconds(10 * pass), place);
             ways.began(2, "turn 90", seconds(10 * pass + 7), place);
             ways.passed(seconds(10 * pass + 8));
@@ -196,14 +196,14 @@ mod tests {
         ways.passed(seconds(40));
         let counted: Vec<_> = ways.atoms.iter().map(|atom| (atom.number, atom.times, atom.total.seconds())).collect();
         assert_eq!(counted, [(1, 3, 21.0), (2, 3, 9.0)]);
-        assert_eq!((ways.atoms[1].place, ways.marks.len()), (Place { x: 0.0, y: 0.0 }, 6));
+        assert_eq!((ways.atoms[1].place, ways.marks.len()), (Point { x: 0.0, y: 0.0 }, 6));
     }
 
     #[test]
     fn a_long_way_is_thinned_and_keeps_its_ends() {
-        let mut ways = Ways::from(Place { x: 0.0, y: 0.0 });
+        let mut ways = Ways::from(Point { x: 0.0, y: 0.0 });
         for metre in 0..20_000_u32 {
-            let place = |x: f64| Place { x, y: 0.0 };
+            let place = |x: f64| Point { x, y: 0.0 };
             ways.began(u64::from(metre % 3), "go 20 0", seconds(u64::from(metre)), place(f64::from(metre)));
             (0..50).for_each(|cm| ways.went(place(f64::from(metre) + f64::from(cm) / 50.0)));
         }
@@ -211,7 +211,7 @@ mod tests {
         assert!((PLACES_MOST / 3..=PLACES_MOST + 1).contains(&kept), "{kept}");
         assert_eq!((ways.marks.len(), ways.uncounted), (MARKS_MOST + 1, 0));
         assert_eq!(ways.atoms.iter().map(|atom| atom.times).sum::<u64>(), 20_000);
-        assert_eq!(ways.before.first(), Some(&Place { x: 0.0, y: 0.0 }));
+        assert_eq!(ways.before.first(), Some(&Point { x: 0.0, y: 0.0 }));
         assert!(ways.places().last().is_some_and(|last| 19_999.98 - last.x < ways.apart), "{:?}", ways.places().last());
         // The mark that combines the last passes does not belong to an atom.
         assert!(ways.marks.last().is_some_and(|mark| mark.atom.is_none()));

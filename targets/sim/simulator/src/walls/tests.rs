@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::*;
-use crate::surfaces::End;
+use crate::surfaces::SegmentEnd;
 use mdle_runtime::{Meters, Pose};
 
 fn uniform(random: &mut ChaCha8Rng) -> f64 {
@@ -30,16 +30,16 @@ fn scene(random: &mut ChaCha8Rng, walls: usize) -> World {
 }
 
 /// Returns a body of size zero.
-fn point(at: Place) -> Footprint {
+fn point(at: Point) -> Footprint {
     let pose = Pose { x: Meters(at.x), y: Meters(at.y), ..Pose::ORIGIN };
     Footprint { pose, form: Form::Disc { radius: 0.0 } }
 }
 
 /// Returns a random position in or near a scene, and a random direction. Every third direction is along an axis, like
 /// most walls.
-fn look(random: &mut ChaCha8Rng) -> (Place, Radians) {
+fn look(random: &mut ChaCha8Rng) -> (Point, Radians) {
     let mut number = || uniform(random);
-    let from = Place { x: 14.0 * number() - 2.0, y: 14.0 * number() - 2.0 };
+    let from = Point { x: 14.0 * number() - 2.0, y: 14.0 * number() - 2.0 };
     let turn = number();
     let turn = if turn < 0.33 { libm::floor(turn * 12.0) / 4.0 } else { turn };
     (from, Radians(turn * std::f64::consts::TAU))
@@ -55,7 +55,7 @@ fn a_ray_meets_the_nearest_of_all_walls() {
         for _ in 0..500 {
             let (from, direction) = look(&mut random);
             let (sin, cos) = libm::sincos(direction.0);
-            let way = Place { x: cos, y: sin };
+            let way = Point { x: cos, y: sin };
             let expected = every.iter().filter_map(|segment| segment.met(from, way, 6.0)).reduce(f64::min);
             assert_eq!(walls.cast(from, way, 6.0), expected, "from {from} along {direction:?}");
         }
@@ -89,10 +89,10 @@ fn a_ray_that_lies_in_borders_of_cells_meets_what_is_there() {
     let world = World::parse("raster", &text).expect("good");
     let walls = Walls::of(&world);
     let every: Vec<_> = world.segments().map(|(_, from, to)| Segment::between(from, to)).collect();
-    for from in (0..40).flat_map(|x| (0..12).map(move |y| Place { x: f64::from(x) / 2.0, y: f64::from(y) / 2.0 })) {
+    for from in (0..40).flat_map(|x| (0..12).map(move |y| Point { x: f64::from(x) / 2.0, y: f64::from(y) / 2.0 })) {
         for eighth in 0..8 {
             let (sin, cos) = libm::sincos(f64::from(eighth) * std::f64::consts::FRAC_PI_4);
-            let way = Place { x: cos, y: sin };
+            let way = Point { x: cos, y: sin };
             let expected = every.iter().filter_map(|segment| segment.met(from, way, 30.0)).reduce(f64::min);
             assert_eq!(walls.cast(from, way, 30.0), expected, "from {from}, eighth {eighth}");
         }
@@ -102,14 +102,14 @@ fn a_ray_that_lies_in_borders_of_cells_meets_what_is_there() {
 #[test]
 fn a_world_without_walls_is_endless() {
     let walls = Walls::of(&World::parse("empty", "").expect("an empty world"));
-    assert_eq!(walls.ray(Place { x: 0.0, y: 0.0 }, Radians(0.3), 1e6), None);
-    assert_eq!(walls.clearance(Place { x: 0.0, y: 0.0 }, 5.0), 5.0);
+    assert_eq!(walls.ray(Point { x: 0.0, y: 0.0 }, Radians(0.3), 1e6), None);
+    assert_eq!(walls.clearance(Point { x: 0.0, y: 0.0 }, 5.0), 5.0);
 }
 
 #[test]
 fn the_nearest_wall_is_named() {
     let world = World::office().expect("our own floor");
-    let name = |x, y| nearest(&world, &point(Place { x, y })).map(|outline| outline.name.as_str());
+    let name = |x, y| nearest(&world, &point(Point { x, y })).map(|outline| outline.name.as_str());
     assert_eq!(name(3.6, 4.6), Some("obstacle"));
     assert_eq!(name(-0.5, 2.0), Some("A west"));
 }
@@ -121,7 +121,7 @@ fn edges_are_where_a_surface_ends_or_turns_away() {
     let walls = Walls::of(&World::parse("edges", text).expect("good"));
     let edge = |x, y, degrees: f64| {
         let (sin, cos) = libm::sincos(degrees.to_radians());
-        walls.found_among(walls.all(), Place { x, y }, Place { x: cos, y: sin }, 9.0).expect("a wall").edge
+        walls.found_among(walls.all(), Point { x, y }, Point { x: cos, y: sin }, 9.0).expect("a wall").edge
     };
     // A ray from below to the box: its corners are edges, since their sides turn away.
     assert!((edge(2.25, -3.0, 90.0) - 0.25).abs() < 1e-9);
@@ -139,7 +139,7 @@ fn edges_are_where_a_surface_ends_or_turns_away() {
 fn bundle(count: usize) -> World {
     let outline = |number: usize| {
         let x = 5.0 + number as f64 / 1000.0;
-        let points = [-1e5, 1e5].map(|y| Place { x, y }).to_vec();
+        let points = [-1e5, 1e5].map(|y| Point { x, y }).to_vec();
         Outline { name: format!("wall {number}"), points, solid: false, rough: 0.0 }
     };
     World { outlines: (0..count).map(outline).collect(), ..World::parse("empty", "").expect("a good world") }
@@ -148,7 +148,7 @@ fn bundle(count: usize) -> World {
 #[test]
 fn long_walls_side_by_side_are_ready_or_refused() {
     let walls = Walls::of_any(&bundle(1000)).expect("few enough");
-    let ray = walls.ray(Place { x: 0.0, y: 0.0 }, Radians(0.0), 10.0);
+    let ray = walls.ray(Point { x: 0.0, y: 0.0 }, Radians(0.0), 10.0);
     assert!(ray.is_some_and(|range| (range - 5.0).abs() < 1e-9), "{ray:?}");
     let fault = Walls::of_any(&bundle(8000)).expect_err("too many");
     assert!(fault.starts_with("8000 walls and sides lie too close together"), "{fault}");
@@ -158,12 +158,12 @@ fn long_walls_side_by_side_are_ready_or_refused() {
 fn walls_that_meet_in_one_point_cover_each_other() {
     let spoke = |number: u32| {
         let (sin, cos) = libm::sincos(f64::from(number));
-        let points = vec![Place { x: 5.0, y: 5.0 }, Place { x: 5.0 + 3.0 * cos, y: 5.0 + 3.0 * sin }];
+        let points = vec![Point { x: 5.0, y: 5.0 }, Point { x: 5.0 + 3.0 * cos, y: 5.0 + 3.0 * sin }];
         Outline { name: String::new(), points, solid: false, rough: 0.0 }
     };
     let world = World { outlines: (0..2000).map(spoke).collect(), ..World::parse("empty", "").expect("a good world") };
     let walls = Walls::of_any(&world).expect("few enough");
-    assert!(walls.standing.ends.iter().all(|[middle, _]| *middle == End::Covered));
+    assert!(walls.standing.ends.iter().all(|[middle, _]| *middle == SegmentEnd::Covered));
 }
 
 #[test]
@@ -176,7 +176,7 @@ fn a_cone_leaves_out_no_robot_that_its_rays_meet() {
         let form = if number % 2 == 0 { Form::SCOUT } else { Form::Rectangle { half_length: 0.3, half_width: 0.2 } };
         let pose = Pose { x: Meters(within(3.0)), y: Meters(within(3.0)), theta: Radians(within(3.0)) };
         walls.put_others(&[Footprint { pose, form }]);
-        let (axis, from) = (Radians(within(3.0)), Place { x: within(0.5), y: within(0.5) });
+        let (axis, from) = (Radians(within(3.0)), Point { x: within(0.5), y: within(0.5) });
         let half_cone = Radians::from_degrees(21.0);
         let near = walls.others_in(from, axis, half_cone);
         let reached = Reached { others: &near, standing: true };
@@ -185,7 +185,7 @@ fn a_cone_leaves_out_no_robot_that_its_rays_meet() {
         let is_aimed = Radians(aimed - axis.0).wrapped().0.abs() < half_cone.0;
         for direction in spread.chain(is_aimed.then_some(aimed)) {
             let (sin, cos) = libm::sincos(direction);
-            let way = Place { x: cos, y: sin };
+            let way = Point { x: cos, y: sin };
             met += u32::from(walls.cast(from, way, 9.0).is_some());
             assert_eq!(walls.cast(from, way, 9.0), walls.cast_among(reached, from, way, 9.0), "{number}");
         }
@@ -200,7 +200,7 @@ fn a_ray_meets_the_nearest_of_robots_and_walls() {
     let mut walls = Walls::of(&World::parse("wall", text).expect("a good world"));
     let at = |x: f64| Footprint { pose: Pose { x: Meters(x), ..Pose::ORIGIN }, form: Form::SCOUT };
     let met = |walls: &Walls| {
-        let (from, way) = (Place { x: 0.0, y: 0.0 }, Place { x: 1.0, y: 0.0 });
+        let (from, way) = (Point { x: 0.0, y: 0.0 }, Point { x: 1.0, y: 0.0 });
         let surface = walls.found_among(walls.all(), from, way, 9.0).expect("a surface");
         assert_eq!(walls.cast(from, way, 9.0), Some(surface.range));
         (libm::round(surface.range * 1000.0), surface.rough)

@@ -4,12 +4,12 @@ use mdle_runtime::{Meters, Pose, Radians};
 use toml::Spanned;
 
 use super::Wrong;
-use super::text::{BoxText, ChargerText, DiscText, DoorText, GoalText, Numbers, StartText, Table, WallText};
+use super::text::{BoxText, ChargerText, DiscText, DoorText, GoalText, Numbers, StartText, TomlTable, WallText};
 use crate::charger::Charger;
 use crate::goal::{Goal, Zone};
-use crate::moving::{Schedule, Stop, Thing};
+use crate::moving::{Schedule, Thing, Waypoint};
 use crate::outline::Outline;
-use crate::place::Place;
+use crate::place::Point;
 
 /// Maximum coordinate, in metres; beyond it, rounding would lose millimetres.
 const FURTHEST: f64 = 1e6;
@@ -50,8 +50,8 @@ impl Unit {
         })
     }
 
-    pub(super) fn goal(self, text: &Spanned<Table<GoalText>>) -> Result<Goal, Wrong> {
-        let Table(written) = text.get_ref();
+    pub(super) fn goal(self, text: &Spanned<TomlTable<GoalText>>) -> Result<Goal, Wrong> {
+        let TomlTable(written) = text.get_ref();
         let (min, max) = (self.pair(&written.min, "`min`")?, self.pair(&written.max, "`max`")?);
         if min.x >= max.x || min.y >= max.y {
             let what = format!("a goal without an inside: it would reach from {min} to {max}");
@@ -72,9 +72,9 @@ impl Unit {
         Ok(Goal { zone: Zone::Rectangle { min, max }, heading })
     }
 
-    pub(super) fn charger(self, text: &Spanned<Table<ChargerText>>) -> Result<Charger, Wrong> {
-        let Table(ChargerText { at, heading, reach }) = text.get_ref();
-        let Place { x, y } = self.pair(at, "`at`")?;
+    pub(super) fn charger(self, text: &Spanned<TomlTable<ChargerText>>) -> Result<Charger, Wrong> {
+        let TomlTable(ChargerText { at, heading, reach }) = text.get_ref();
+        let Point { x, y } = self.pair(at, "`at`")?;
         let theta = Radians::from_degrees(Self(1.0).length(heading)?).wrapped();
         let metres = reach.as_ref().map_or(Ok(REACH), |reach| self.length(reach))?;
         match reach {
@@ -89,7 +89,7 @@ impl Unit {
             let what = "a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`";
             return Err(Wrong::at(&text.points, what));
         }
-        let mut points: Vec<Place> = Vec::with_capacity(written.len());
+        let mut points: Vec<Point> = Vec::with_capacity(written.len());
         for point in written {
             let place = self.pair(point, "a point")?;
             if points.last() == Some(&place) {
@@ -101,14 +101,14 @@ impl Unit {
         Ok(Outline { name: named(text.name.as_ref(), "wall", number), points, solid: false, rough })
     }
 
-    pub(super) fn box_(self, number: usize, text: &Spanned<Table<BoxText>>, whole: f64) -> Result<Stands, Wrong> {
-        let Table(written) = text.get_ref();
+    pub(super) fn box_(self, number: usize, text: &Spanned<TomlTable<BoxText>>, whole: f64) -> Result<Stands, Wrong> {
+        let TomlTable(written) = text.get_ref();
         let stops = self.schedule(written.schedule.as_ref())?;
         let first = stops.first().map(|stop| stop.at);
-        let around = |Place { x, y }: Place, size: &Numbers| {
+        let around = |Point { x, y }: Point, size: &Numbers| {
             let half = self.pair(size, "`size`")?;
             let (w, h) = (half.x / 2.0, half.y / 2.0);
-            Ok((Place { x: x - w, y: y - h }, Place { x: x + w, y: y + h }))
+            Ok((Point { x: x - w, y: y - h }, Point { x: x + w, y: y + h }))
         };
         let ((min, max), place) = match (&written.min, &written.max, &written.centre, &written.size, first) {
             (Some(min), Some(max), None, None, None) => ((self.pair(min, "`min`")?, self.pair(max, "`max`")?), max),
@@ -125,14 +125,14 @@ impl Unit {
         if min.x >= max.x || min.y >= max.y {
             return Err(Wrong::at(place, format!("a box without an inside: it would reach from {min} to {max}")));
         }
-        let points = vec![min, Place { x: max.x, y: min.y }, max, Place { x: min.x, y: max.y }, min];
+        let points = vec![min, Point { x: max.x, y: min.y }, max, Point { x: min.x, y: max.y }, min];
         let rough = rough(written.rough.as_ref(), whole)?;
         let outline = Outline { name: named(written.name.as_ref(), "box", number), points, solid: true, rough };
         Ok(standing(outline, stops, written.repeat))
     }
 
-    pub(super) fn disc(self, number: usize, text: &Spanned<Table<DiscText>>, whole: f64) -> Result<Stands, Wrong> {
-        let Table(written) = text.get_ref();
+    pub(super) fn disc(self, number: usize, text: &Spanned<TomlTable<DiscText>>, whole: f64) -> Result<Stands, Wrong> {
+        let TomlTable(written) = text.get_ref();
         let stops = self.schedule(written.schedule.as_ref())?;
         let centre = match (&written.centre, stops.first()) {
             (Some(centre), None) => self.pair(centre, "`centre`")?,
@@ -147,7 +147,7 @@ impl Unit {
         }
         let corner = |number: u32| {
             let (sin, cos) = libm::sincos(std::f64::consts::TAU * f64::from(number % CORNERS) / f64::from(CORNERS));
-            Place { x: centre.x + radius * cos, y: centre.y + radius * sin }
+            Point { x: centre.x + radius * cos, y: centre.y + radius * sin }
         };
         let points = (0..=CORNERS).map(corner).collect();
         let rough = rough(written.rough.as_ref(), whole)?;
@@ -155,8 +155,8 @@ impl Unit {
         Ok(standing(outline, stops, written.repeat))
     }
 
-    pub(super) fn door(self, number: usize, text: &Table<DoorText>, whole: f64) -> Result<Thing, Wrong> {
-        let Table(written) = text;
+    pub(super) fn door(self, number: usize, text: &TomlTable<DoorText>, whole: f64) -> Result<Thing, Wrong> {
+        let TomlTable(written) = text;
         if written.points.get_ref().len() != 2 {
             return Err(Wrong::at(&written.points, "a door has two points, as in `points = [[0, 0], [0.9, 0]]`"));
         }
@@ -184,28 +184,28 @@ impl Unit {
     }
 
     /// Returns the stops of a schedule; empty for an object without a schedule.
-    fn schedule(self, written: Option<&Spanned<Vec<Numbers>>>) -> Result<Vec<Stop>, Wrong> {
+    fn schedule(self, written: Option<&Spanned<Vec<Numbers>>>) -> Result<Vec<Waypoint>, Wrong> {
         let Some(written) = written else { return Ok(Vec::new()) };
         if written.get_ref().is_empty() {
             return Err(Wrong::at(written, "a schedule needs a stop, as in `schedule = [[0, 1, 2], [5, 4, 2]]`"));
         }
-        let mut stops: Vec<Stop> = Vec::new();
+        let mut stops: Vec<Waypoint> = Vec::new();
         for stop in written.get_ref() {
             let [t, x, y] = stop.get_ref().as_slice() else {
                 return Err(Wrong::at(stop, "a stop is three numbers: seconds, and x and y of the centre"));
             };
-            let (t, at) = (seconds(t)?, Place { x: self.length(x)?, y: self.length(y)? });
+            let (t, at) = (seconds(t)?, Point { x: self.length(x)?, y: self.length(y)? });
             if stops.last().is_some_and(|before| before.t >= t) {
                 return Err(Wrong::at(stop, "the stops of a schedule must follow one another in time"));
             }
-            stops.push(Stop { t, at });
+            stops.push(Waypoint { t, at });
         }
         Ok(stops)
     }
 
-    pub(super) fn pair(self, written: &Numbers, what: &str) -> Result<Place, Wrong> {
+    pub(super) fn pair(self, written: &Numbers, what: &str) -> Result<Point, Wrong> {
         match written.get_ref().as_slice() {
-            [x, y] => Ok(Place { x: self.length(x)?, y: self.length(y)? }),
+            [x, y] => Ok(Point { x: self.length(x)?, y: self.length(y)? }),
             other => Err(Wrong::at(written, format!("{what} is two numbers, x and y in metres, not {}", other.len()))),
         }
     }
@@ -242,7 +242,7 @@ fn seconds(written: &Spanned<f64>) -> Result<f64, Wrong> {
     Err(Wrong::at(written, format!("{value:e} is no time: expected seconds since the start, from 0 on")))
 }
 
-fn standing(outline: Outline, stops: Vec<Stop>, repeats: bool) -> Stands {
+fn standing(outline: Outline, stops: Vec<Waypoint>, repeats: bool) -> Stands {
     if stops.is_empty() {
         return Stands::Still(outline);
     }

@@ -5,8 +5,8 @@ use toml::Spanned;
 
 use super::Wrong;
 use super::outlines::Unit;
-use super::text::{SoundText, Table};
-use crate::place::Place;
+use super::text::{SoundText, TomlTable};
+use crate::place::Point;
 
 /// Default level of a source, in dB.
 const LEVEL: f64 = 10.0;
@@ -19,7 +19,7 @@ const KINDS: [(&str, SoundKind); 2] = [("white", SoundKind::White), ("speech", S
 
 impl Unit {
     /// Reads the sound sources.
-    pub(super) fn sounds(self, written: &[Spanned<Table<SoundText>>]) -> Result<Vec<SoundSource>, Wrong> {
+    pub(super) fn sounds(self, written: &[Spanned<TomlTable<SoundText>>]) -> Result<Vec<SoundSource>, Wrong> {
         if let Some(text) = written.get(MOST) {
             return Err(Wrong::at(text, format!("more than {MOST} sources of sound")));
         }
@@ -27,7 +27,7 @@ impl Unit {
     }
 
     fn sound(self, SoundText { at, kind, level }: &SoundText) -> Result<SoundSource, Wrong> {
-        let Place { x, y } = self.pair(at, "`at`")?;
+        let Point { x, y } = self.pair(at, "`at`")?;
         let found = kind.as_ref().map_or(Some(SoundKind::White), |kind| {
             KINDS.iter().find(|(name, _)| name == kind.get_ref()).map(|(_, kind)| *kind)
         });

@@ -18,20 +18,20 @@ pub(super) struct WorldText {
     pub(super) units: Option<Spanned<String>>,
     pub(super) rough: Option<Spanned<f64>>,
     #[serde(default)]
-    pub(super) start: Table<StartText>,
-    pub(super) goal: Option<Spanned<Table<GoalText>>>,
-    pub(super) charger: Option<Spanned<Table<ChargerText>>>,
+    pub(super) start: TomlTable<StartText>,
+    pub(super) goal: Option<Spanned<TomlTable<GoalText>>>,
+    pub(super) charger: Option<Spanned<TomlTable<ChargerText>>>,
     pub(super) t60: Option<Spanned<f64>>,
     #[serde(default, rename = "sound")]
-    pub(super) sounds: Vec<Spanned<Table<SoundText>>>,
+    pub(super) sounds: Vec<Spanned<TomlTable<SoundText>>>,
     #[serde(default, rename = "wall")]
-    pub(super) walls: Vec<Table<WallText>>,
+    pub(super) walls: Vec<TomlTable<WallText>>,
     #[serde(default, rename = "box")]
-    pub(super) boxes: Vec<Spanned<Table<BoxText>>>,
+    pub(super) boxes: Vec<Spanned<TomlTable<BoxText>>>,
     #[serde(default, rename = "disc")]
-    pub(super) discs: Vec<Spanned<Table<DiscText>>>,
+    pub(super) discs: Vec<Spanned<TomlTable<DiscText>>>,
     #[serde(default, rename = "door")]
-    pub(super) doors: Vec<Table<DoorText>>,
+    pub(super) doors: Vec<TomlTable<DoorText>>,
 }
 
 #[derive(Deserialize, Default)]
@@ -113,9 +113,9 @@ pub(super) struct DoorText {
 
 /// A value that must be a table: serde would also accept an array, and ignore its surplus values.
 #[derive(Default)]
-pub(super) struct Table<T>(pub(super) T);
+pub(super) struct TomlTable<T>(pub(super) T);
 
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for TomlTable<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(Keys(PhantomData))
     }
@@ -124,13 +124,13 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
 struct Keys<T>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>> Visitor<'de> for Keys<T> {
-    type Value = Table<T>;
+    type Value = TomlTable<T>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "a table")
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Table<T>, A::Error> {
-        T::deserialize(MapAccessDeserializer::new(map)).map(Table)
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<TomlTable<T>, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(map)).map(TomlTable)
     }
 }
