@@ -201,6 +201,12 @@ fn a_run_that_ends_otherwise_than_by_its_plan_says_why() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
 }
 
+#[test]
+fn turns_in_simulated_time_are_never_late() {
+    let left = piped(&with_plan("shell_late"), &[], b"step 3\nget /clock/late/max\nget /clock/missed\n");
+    assert_eq!((&*left.out, left.status), ("3 turns, 0.2s\n(no value yet)\n(no value yet)\n", Some(0)), "{left:?}");
+}
+
 /// Requests are handled at once while the clock is paused; with a delay, 300 readings would take 6 s and more.
 #[test]
 fn a_reading_waits_for_no_turn_while_the_clock_stands() {
