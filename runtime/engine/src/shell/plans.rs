@@ -2,6 +2,7 @@
 //! III-D and Fig. 7).
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 use mdle_host::{Break, Pilot as _, PlanPosition};
@@ -138,6 +139,8 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
         let stored = moment.pilot.plans().stored().flat_map(|plan| {
             let nodes = [
                 ("text", Node::reading(Kind::Text, "text of the plan's file")),
+                ("diagnostics", Node::reading(Kind::Text, "warnings about the plan's file")),
+                ("analysis", Node::reading(Kind::Text, "figures of the plan, as of `mdlec analyze`")),
                 ("reads", Node::reading(Kind::Text, "attributes of modules that the plan reads")),
                 (
                     "run",
@@ -171,7 +174,10 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
         to.extend(plans.stored().flat_map(|plan| {
             let reads = plan.loaded.reads().iter();
             let reads: Vec<_> = reads.map(|read| AttributeName::new(read.module, read.attribute).to_string()).collect();
-            [Some(Value::text(plan.text())), Some(Value::Text(reads.join(", ").into())), None, None]
+            let facts = [&plan.facts.diagnostics, &plan.facts.analysis];
+            let [diagnostics, analysis] = facts.map(|text| (!text.is_empty()).then(|| Value::Text(Arc::clone(text))));
+            let reads = Some(Value::Text(reads.join(", ").into()));
+            [Some(Value::text(plan.text())), diagnostics, analysis, reads, None, None]
         }));
     }
 
