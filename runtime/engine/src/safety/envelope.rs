@@ -7,7 +7,7 @@ use mdle_host::{Intervention, LimitedQuantity, Verdict};
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Nanos, RadiansPerSecond, Twist};
 
-use super::{Fence, Measure, Rules, Then};
+use super::{Fence, Limits, Measure, Rules, Then};
 
 /// Speed, in metres per second, below which a robot that a fence has slowed down counts as stopped: 1 cm/s.
 const CREEP: f64 = 0.01;
@@ -18,6 +18,8 @@ const RATES: u32 = 4;
 #[derive(Debug, Clone)]
 pub struct Envelope {
     rules: Rules,
+    /// Limits at the beginning of the run.
+    first_limits: Limits,
     /// Period of a turn, in seconds.
     period: f64,
     /// Input that was sent last.
@@ -66,6 +68,7 @@ impl Envelope {
     #[must_use]
     pub fn new(rules: Rules, period: Duration) -> Self {
         let mut envelope = Self {
+            first_limits: rules.limits,
             rules,
             period: period.as_secs_f64(),
             last: Twist::default(),
@@ -204,6 +207,21 @@ impl Envelope {
     /// change.
     pub fn rules_mut(&mut self) -> &mut Rules {
         &mut self.rules
+    }
+
+    /// Resets the rules: limits have their values of the beginning of the run, counts are 0, and rules that have
+    /// replaced a plan apply again. Returns the names of these rules.
+    pub fn reset(&mut self) -> Vec<String> {
+        self.rules.limits = self.first_limits;
+        self.counts.iter_mut().for_each(|(_, count)| *count = 0);
+        let spent = std::mem::take(&mut self.spent);
+        spent.into_iter().map(|id| self.name(id).to_owned()).collect()
+    }
+
+    /// Returns the limits at the beginning of the run.
+    #[must_use]
+    pub fn first_limits(&self) -> Limits {
+        self.first_limits
     }
 
     /// Returns each rule with the number of turns in which it changed the input.

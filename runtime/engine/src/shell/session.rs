@@ -118,7 +118,7 @@ where
     }
 
     fn take_changes(&mut self) -> Vec<Change> {
-        let Some((recorded, guardian)) = self.recorded.as_mut().zip(self.parts.safety.0.as_ref()) else {
+        let Some((recorded, guardian)) = self.recorded.as_mut().zip(self.parts.safety.0.as_mut()) else {
             return Vec::new();
         };
         guardian.changes_since(recorded)
