@@ -34,6 +34,16 @@ fn answers(test: &str, commands: &str) -> Vec<String> {
     String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect()
 }
 
+/// Nothing changes between two breaks, so that a reading there needs no turn.
+#[test]
+fn many_readings_take_few_turns() {
+    let readings = "get /clock/period\n".repeat(300);
+    let answers = answers("clock_readings", &format!("{readings}get /clock/turns\n"));
+    let (turns, readings) = answers.split_last().unwrap();
+    assert_eq!(readings, vec!["0.1s"; 300]);
+    assert!(turns.parse::<u64>().unwrap() < 100, "{turns}");
+}
+
 #[test]
 fn a_session_reads_how_late_turns_are() {
     let commands = "wait 1s\nget /clock/late/p50\nget /clock/late/p99\nget /clock/late/max\n\

@@ -89,6 +89,7 @@ where
     }
 
     fn at_break(&mut self, moment: &mut Break<'_, Engine<A>>) -> Orders {
+        self.desk.begin_break();
         self.parts.recorder.made(moment);
         self.parts.recorded = moment.turns;
         self.parts.clock.made(moment);
