@@ -114,10 +114,10 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
         let rules = envelope.counts().flat_map(|(id, _)| {
             let own = [
                 Some(("count", count)),
-                envelope.when(id).map(|_| ("when", when)),
-                envelope.then(id).map(|_| ("then", then)),
+                envelope.rules().when(id).map(|_| ("when", when)),
+                envelope.rules().then(id).map(|_| ("then", then)),
             ];
-            let folder = format!("/safety/rules/{}", envelope.name(id).replace(' ', "_"));
+            let folder = format!("/safety/rules/{}", envelope.rules().name(id).replace(' ', "_"));
             own.into_iter().flatten().map(move |(name, node)| (format!("{folder}/{name}"), node))
         });
         own.chain(rules).collect()
@@ -134,7 +134,7 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
         }
         to.push(None);
         to.extend(envelope.counts().flat_map(|(id, count)| {
-            let words = [envelope.when(id), envelope.then(id)].into_iter().flatten();
+            let words = [envelope.rules().when(id), envelope.rules().then(id)].into_iter().flatten();
             [Value::count(count)].into_iter().chain(words.map(Value::text)).map(Some)
         }));
     }
