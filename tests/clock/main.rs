@@ -13,6 +13,7 @@ mod phases;
 mod pursuits;
 mod scenarios;
 mod sent_plans;
+mod sessions;
 mod signalled;
 mod stands;
 

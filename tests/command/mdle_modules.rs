@@ -100,3 +100,18 @@ fn stop_and_start_say_what_they_do() {
     [1]
     ");
 }
+
+/// A module without turns has no cost: a child process, and a module that nothing reads.
+#[test]
+fn the_tree_shows_how_long_a_turn_of_a_module_takes() {
+    let commands = "get /usr/heading/.cost\ncall /lib/process nose echo '{}'; while read line; do echo '{}'; done\nstep 3\n\
+                    get /usr/heading/.cost\nget /usr/mdle/.cost\nget /usr/sensors/.cost\nget /usr/nose/.cost\n";
+    let dialogue = dialogue("modules_cost", &[], commands);
+    let answers: Vec<_> = dialogue.lines().filter(|line| !line.starts_with('>')).collect();
+    let &[none, _, heading, plan, sensors, nose, ..] = answers.as_slice() else { panic!("{dialogue}") };
+    assert_eq!([none, sensors, nose], ["(no value yet)"; 3], "{dialogue}");
+    for cost in [heading, plan] {
+        let cost: f64 = cost.strip_suffix("ms").unwrap().parse().unwrap();
+        assert!(cost > 0.0 && cost < 1000.0, "{dialogue}");
+    }
+}

@@ -43,6 +43,14 @@ fn a_stored_plan_takes_over_at_its_moment() {
 }
 
 #[test]
+fn a_stored_plan_has_warnings_and_figures() {
+    let folder = with_plans("shell_facts");
+    let commands = "get /plans/Turn/diagnostics\nget /plans/Turn/analysis\nload_plan warned.mdle\n\
+                    get /plans/Warned/diagnostics\nget /plans/Warned/analysis\n";
+    insta::assert_snapshot!(dialogue(&folder, &[], commands));
+}
+
+#[test]
 fn a_text_that_is_typed_becomes_the_plan() {
     let folder = with_plans("shell_text");
     let commands = "step\nset /usr/mdle/main { Back (wait 2s) \\\n (Atom (null) (go -20 0)) }\nstep\nget /usr/mdle/main\n\

@@ -201,6 +201,12 @@ fn a_run_that_ends_otherwise_than_by_its_plan_says_why() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
 }
 
+#[test]
+fn turns_in_simulated_time_are_never_late() {
+    let left = piped(&with_plan("shell_late"), &[], b"step 3\nget /clock/late/max\nget /clock/missed\n");
+    assert_eq!((&*left.out, left.status), ("3 turns, 0.2s\n(no value yet)\n(no value yet)\n", Some(0)), "{left:?}");
+}
+
 /// Requests are handled at once while the clock is paused; with a delay, 300 readings would take 6 s and more.
 #[test]
 fn a_reading_waits_for_no_turn_while_the_clock_stands() {
@@ -222,6 +228,28 @@ fn limits_need_safety_rules() {
     let text = dialogue(&with_plan("shell_unsafe"), &[], commands);
     let refusal = "`/safety/limits/speed`: this session has no safety rules: begin it with `--safety FILE`";
     assert!(text.contains(&format!("error: standard input:1: {refusal}\n")), "{text}");
+}
+
+/// A rule that has replaced a plan is off until it is reset. A replay repeats the reset.
+#[test]
+fn a_reset_lets_rules_apply_again() {
+    let folder = with_plan("shell_reset");
+    fs::write(folder.join("go.mdle"), "{ Go (wait 60s) (Atom (null) (go 60 0)) }\n").unwrap();
+    fs::write(folder.join("back.mdle"), "{ Back (wait 60s) (Atom (null) (go -5 0)) }\n").unwrap();
+    let rules = "[limits]\nspeed = \"50cm/s\"\n\n[guards.far]\nwhen = \"x > 20cm\"\nthen = \"back.mdle\"\n";
+    fs::write(folder.join("rules.toml"), rules).unwrap();
+    let commands = "load_plan go.mdle\nstep 9\nget /usr/mdle/atom\nget /safety/rules/far/count\n\
+                    set /usr/mdle/trial 0s\nset /safety/limits/speed 30cm/s\nset /usr/mdle/main Go\nstep 5\n\
+                    get /usr/mdle/atom\nget /usr/robot/input/v\ncall /safety/reset now\ncall /safety/reset\n\
+                    get /safety/limits/speed\nget /safety/rules/far/count\nset /safety/limits/turn_rate 1rad/s\nstep 3\n\
+                    get /usr/mdle/atom\nget /safety/rules/far/count\n";
+    insta::assert_snapshot!(dialogue(&folder, &["--safety", "rules.toml", "--log", "run.mcap"], commands));
+    let replay = Command::new(mdle()).args(["replay", "run.mcap"]).current_dir(&folder).output().unwrap();
+    let replayed = String::from_utf8(replay.stdout).unwrap();
+    assert!(replayed.starts_with("the same to the bit, "), "{replayed}");
+    let unruled = dialogue(&folder, &[], "call /safety/reset\n");
+    let refusal = "`/safety/reset`: this session has no safety rules: begin it with `--safety FILE`";
+    assert!(unruled.contains(refusal), "{unruled}");
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use mdle_compiler::load::{self, Loaded};
-use mdle_engine::{CompiledPlans, Engine, Library, NoTrial, PlanEvent, PlanSource, Plans, StoredPlan, When};
+use mdle_engine::{CompiledPlans, Engine, Library, NoTrial, PlanEvent, PlanFacts, PlanSource, Plans, StoredPlan, When};
 use mdle_host::{Microphones, Moment, Pace, Pilot, RunTerms, StopRequest, Time, Transitions};
 use mdle_runtime::{Nanometers, Nanos, Turn};
 use mdle_scripted::alphabet::Alphabet;
@@ -166,8 +166,8 @@ fn a_plan_can_replace_itself_in_every_turn() {
 /// Compiles the plan `Main` of a text.
 fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
     let PlanSource::Text(text) = source else { return Err("there is no such file".to_owned()) };
-    let plan =
-        StoredPlan { name: "Main".into(), files: [("main".to_owned(), text.clone())].into(), loaded: loaded(text)? };
+    let (files, facts) = ([("main".to_owned(), text.clone())].into(), PlanFacts::default());
+    let plan = StoredPlan { name: "Main".into(), files, loaded: loaded(text)?, facts };
     Ok(CompiledPlans { plans: vec![plan], warnings: String::new() })
 }
 

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
 
 use mdle_engine::link::{Content, Letter, Link, RefusedPlan, State, StateLink};
-use mdle_engine::{CompiledPlans, PlanEvent, PlanSource, StoredPlan, When};
+use mdle_engine::{CompiledPlans, PlanEvent, PlanFacts, PlanSource, StoredPlan, When};
 use mdle_host::{Moment, Pilot};
 use mdle_runtime::{Nanos, Pose};
 use mdle_scripted::Output;
@@ -64,7 +64,7 @@ fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
         return Err("there is no such file".to_owned());
     };
     let files = [("main".to_owned(), text.clone())].into();
-    let plan = StoredPlan { name: "Main".into(), files, loaded: loaded(text)? };
+    let plan = StoredPlan { name: "Main".into(), files, loaded: loaded(text)?, facts: PlanFacts::default() };
     let warnings = if text == WARNED { "warning: careful\n".to_owned() } else { String::new() };
     Ok(CompiledPlans { plans: vec![plan], warnings })
 }
@@ -228,7 +228,8 @@ fn a_robot_whose_plan_was_ended_takes_no_other() {
 #[test]
 fn sent_plans_are_not_stored() {
     let mut bob = Bob::new();
-    let own = StoredPlan { name: "Main".into(), files: [].into(), loaded: loaded(IDLE).unwrap() };
+    let (loaded, facts) = (loaded(IDLE).unwrap(), PlanFacts::default());
+    let own = StoredPlan { name: "Main".into(), files: [].into(), loaded, facts };
     bob.run.plans().store(own).unwrap();
     for text in [DRIFT, FIRST].into_iter().cycle().take(70) {
         bob.gets(text, When::Now);

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use mdle_engine::{Declare, Fault, Library, Module, Out, Refusal, StoredPlan, Turn, When};
+use mdle_engine::{Declare, Fault, Library, Module, Out, PlanFacts, Refusal, StoredPlan, Turn, When};
 use mdle_host::{Pace, Pilot as _, PilotFault, Time, claim_for_worker};
 use mdle_runtime::{
     self as runtime, Argument, Begin, Comparison, Completes, Control, Law, Limit, Nanos, Sensed, Turn as PlanTurn,
@@ -254,6 +254,7 @@ fn plans_are_dropped_by_the_janitor() {
         name: "Odd".into(),
         files: [("odd.mdle".to_owned(), text.to_owned())].into(),
         loaded: loaded(text),
+        facts: PlanFacts::default(),
     };
     run.engine.plans_mut().store(stored(&plan("(go -15 0)"))).unwrap();
     run.engine.plans_mut().delete("Odd").unwrap();

@@ -31,9 +31,7 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
     };
     match options.machine {
         TraceMachine::Tree => print(run(Tree::new(&compiled.plan), &script)),
-        TraceMachine::Table => {
-            print(run(TableMachine::new(&compiled.nondegenerate).map_err(too_large)?, &script))
-        }
+        TraceMachine::Table => print(run(TableMachine::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
         TraceMachine::Matrix => print(run(MatrixProduct::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
         TraceMachine::Counted => print(run(Counted::new(&compiled.machine), &script)),
     }

@@ -30,6 +30,7 @@ pub use module::{
     About, Background, Candidate, Declare, Exchange, Fault, Module, Offer, PLAN, Refusal, Relevance, Stopped, Turn,
 };
 pub use plans::{
-    Compile, CompiledPlans, EngineAlphabet, MOST_STORED, NoTrial, PlanEvent, PlanSource, Plans, StoredPlan, TRIAL, When,
+    Compile, CompiledPlans, EngineAlphabet, MOST_STORED, NoTrial, PlanEvent, PlanFacts, PlanSource, Plans, StoredPlan,
+    TRIAL, When,
 };
 pub use recorder::Recorder;

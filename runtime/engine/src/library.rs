@@ -54,12 +54,15 @@ impl<Y> Library<Y> {
     /// Checks that a module can be added under this name.
     ///
     /// # Errors
-    /// Fails if the name is invalid or taken.
+    /// Fails if the name is invalid, reserved or taken.
     pub fn admits(&self, name: &str) -> Result<(), Refusal> {
         if !is_name(name) {
             return Err(Refusal::BadName(name.to_owned()));
         }
-        let is_taken = [PLAN, ROBOT].contains(&name) || self.names().any(|known| known == name);
+        if [PLAN, ROBOT].contains(&name) {
+            return Err(Refusal::Reserved(name.to_owned()));
+        }
+        let is_taken = self.names().any(|known| known == name);
         if is_taken { Err(Refusal::NameTaken(name.to_owned())) } else { Ok(()) }
     }
 

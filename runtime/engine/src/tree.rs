@@ -11,6 +11,8 @@ mod node;
 mod proposal;
 mod request;
 mod shared;
+#[cfg(test)]
+mod tests;
 mod value;
 mod watch;
 

@@ -136,7 +136,9 @@ impl<I: Instants> Clock<I> {
         match self.time {
             Time::Wall => {
                 let passed = nanos(self.instants.now()).saturating_sub(self.origin);
-                self.place = self.place.max(passed.div_ceil(self.period));
+                let place = self.place.max(passed.div_ceil(self.period));
+                self.timing.misses(place.saturating_sub(self.place));
+                self.place = place;
                 Some(self.origin.saturating_add(self.place.saturating_mul(self.period)))
             }
             Time::Stepped(Pace::Times(times)) => {

@@ -39,11 +39,12 @@ pub(crate) trait Turns {
     /// # Errors
     /// Returns a message for the operator if the robot has a fault.
     fn exchange(&mut self) -> Result<(), String>;
-    /// Makes turn `number`, counted from 0, with the output that was read at `t`.
+    /// Makes turn `number`, counted from 0, with the output that was read at `t`. `timing` is about the turns before,
+    /// if a robot in real time has made any.
     ///
     /// # Errors
     /// Returns the reason if the run must end although the robot has no fault.
-    fn turn(&mut self, t: Nanos, number: u64) -> Result<TurnEnd, RunEnd>;
+    fn turn(&mut self, t: Nanos, number: u64, timing: Option<&Timing>) -> Result<TurnEnd, RunEnd>;
     /// Returns the new pace of stepped time; `None` if the pace does not change.
     fn pace(&mut self) -> Option<Pace> {
         None
@@ -51,7 +52,7 @@ pub(crate) trait Turns {
     /// Reports the lateness and the duration of turns, after a request by SIGUSR1.
     fn tell_timing(&mut self, timing: &Timing);
     /// Handles the end of the cycle, whose last turn was at `t`; the robot has not been stopped yet.
-    fn ended(&mut self, ending: &RunEnd, t: Nanos);
+    fn ended(&mut self, ending: &RunEnd, t: Nanos, timing: Option<&Timing>);
 }
 
 /// Makes turns, from the exchange of turn 0, until the run ends.
@@ -72,7 +73,7 @@ pub(crate) fn cycle<I: Instants>(
     let mut t = clock.zero();
     let mut number: u64 = 0;
     let ending = loop {
-        match turns.turn(t, number) {
+        match turns.turn(t, number, clock.timing()) {
             Ok(TurnEnd::Next) => {}
             Ok(TurnEnd::Over) => break RunEnd::Over,
             Err(ending) => break ending,
@@ -97,7 +98,7 @@ pub(crate) fn cycle<I: Instants>(
         }
         t = clock.taken();
     };
-    turns.ended(&ending, t);
+    turns.ended(&ending, t, clock.timing());
     ending
 }
 

@@ -13,6 +13,7 @@ use crate::pilot::{AfterPlan, Pilot, PilotFault};
 use crate::position::Position;
 use crate::report::ReportWriter;
 use crate::run_end::RunEnd;
+use crate::timing::Timing;
 use crate::transitions::Transitions;
 use crate::{Break, Intervention, Orders, SettingsOf, Supervisor};
 
@@ -67,11 +68,12 @@ pub(crate) trait Drive {
     fn ended_by(&mut self, rule: &str) -> bool;
     /// Returns how the run continues, after a turn in which the current plan has ended.
     fn after_plan(&mut self) -> AfterPlan;
-    /// Calls the supervisor, if there is one, at the break after `turns` turns, the last of them at time `t`.
-    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &ReportWriter<'_>) -> Orders;
+    /// Calls the supervisor, if there is one, at a break: after this number of turns, the last of them at this time,
+    /// with `true` if the plan is over. `timing` is about the turns, in real time.
+    fn at_break(&mut self, moment: (u64, Nanos, bool), report: &ReportWriter<'_>, timing: Option<&Timing>) -> Orders;
     /// Passes the last state of a run that ends before its plan, after `turns` turns, to the supervisor, if there is
     /// one.
-    fn at_end(&mut self, turns: u64, t: Nanos, report: &ReportWriter<'_>);
+    fn at_end(&mut self, turns: u64, t: Nanos, report: &ReportWriter<'_>, timing: Option<&Timing>);
     /// Passes the reason for the end of a run, and the exit status, to the supervisor, if there is one.
     fn ended(&mut self, why: &str, status: u8);
 
@@ -213,18 +215,20 @@ where
         self.helm.pilot_mut().after_plan()
     }
 
-    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &ReportWriter<'_>) -> Orders {
+    fn at_break(&mut self, moment: (u64, Nanos, bool), report: &ReportWriter<'_>, timing: Option<&Timing>) -> Orders {
+        let (turns, t, is_over) = moment;
         let Self { robot, helm, settings, output: Some(y), .. } = self else { return Orders::default() };
         let Some((supervisor, pilot, input)) = helm.parts() else { return Orders::default() };
         let (settings, course) = (settings.map(|settings| settings(robot)), report.course());
-        supervisor.at_break(&mut Break { turns, t, y, input, is_over, pilot, settings, course })
+        supervisor.at_break(&mut Break { turns, t, y, input, is_over, pilot, settings, course, timing })
     }
 
-    fn at_end(&mut self, turns: u64, t: Nanos, report: &ReportWriter<'_>) {
+    fn at_end(&mut self, turns: u64, t: Nanos, report: &ReportWriter<'_>, timing: Option<&Timing>) {
         let Self { robot, helm, settings, output: Some(y), .. } = self else { return };
         let Some((supervisor, pilot, input)) = helm.parts() else { return };
         let (settings, course) = (settings.map(|settings| settings(robot)), report.course());
-        supervisor.at_end(&Break { turns, t, y, input, is_over: false, pilot, settings, course });
+        let is_over = false;
+        supervisor.at_end(&Break { turns, t, y, input, is_over, pilot, settings, course, timing });
     }
 
     fn ended(&mut self, why: &str, status: u8) {

@@ -126,6 +126,7 @@ pub use supervisor::{
 };
 pub use target::Target;
 pub use time::{Pace, Time};
+pub use timing::Lateness;
 pub use transitions::{Operand, Transitions};
 pub use trials::{Trials, trials};
 pub use turn_watch::at_work;

@@ -8,7 +8,8 @@ use mdle_record::Change;
 use mdle_runtime::{Nanos, Plan};
 
 use crate::standing::{Course, standing};
-use crate::{Pace, Pilot, PlanPosition, RobotSettings, RunTerms};
+use crate::timing::Timing;
+use crate::{Lateness, Pace, Pilot, PlanPosition, RobotSettings, RunTerms};
 
 /// Decides which input a robot is sent, and acts between the turns that the pilot `B` makes.
 ///
@@ -162,6 +163,8 @@ pub struct Break<'b, B: Pilot> {
     /// Settings of the robot, if it has any.
     pub settings: Option<&'b mut dyn RobotSettings>,
     pub(crate) course: &'b Course,
+    /// Lateness and duration of the turns; `None` in stepped time, and before the second turn.
+    pub(crate) timing: Option<&'b Timing>,
 }
 
 impl<B: Pilot> Break<'_, B> {
@@ -170,6 +173,12 @@ impl<B: Pilot> Break<'_, B> {
     pub fn position(&self) -> Option<PlanPosition<'_>> {
         let machine = self.pilot.machine()?;
         Some(standing(machine, self.t, self.pilot.zero(), self.course))
+    }
+
+    /// Returns the lateness of the turns up to the last one; `None` in stepped time, and before the second turn.
+    #[must_use]
+    pub fn lateness(&self) -> Option<Lateness> {
+        self.timing.map(Timing::lateness)
     }
 }
 

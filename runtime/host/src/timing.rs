@@ -30,6 +30,21 @@ pub(crate) struct Timing {
     took: Counts,
     overruns: u64,
     in_a_row: u32,
+    /// Number of turns that were not made because the turn before them ended too late.
+    missed: u64,
+}
+
+/// Lateness of the turns of a run on a real robot: times from the scheduled start of a turn to its start.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Lateness {
+    /// Lateness that half of the turns do not exceed, rounded up to 1, 2 or 5 times a power of ten.
+    pub p50: Duration,
+    /// Lateness that 99 of 100 turns do not exceed, rounded up in the same way.
+    pub p99: Duration,
+    /// Maximum lateness.
+    pub max: Duration,
+    /// Number of turns that were not made because the turn before them ended too late.
+    pub missed: u64,
 }
 
 /// Number of turns in each class.
@@ -48,12 +63,24 @@ impl Timing {
 
     /// Returns empty statistics for turns with a period in nanoseconds.
     pub(crate) fn new(period: u64) -> Self {
-        Self { period, late: Counts::default(), took: Counts::default(), overruns: 0, in_a_row: 0 }
+        Self { period, late: Counts::default(), took: Counts::default(), overruns: 0, in_a_row: 0, missed: 0 }
     }
 
     /// Records the start of a turn, `late` nanoseconds after its scheduled time.
     pub(crate) fn begins(&mut self, late: u64) {
         self.late.add(late);
+    }
+
+    /// Records turns that are not made, because the turn before them ended too late.
+    pub(crate) fn misses(&mut self, turns: u64) {
+        self.missed = self.missed.saturating_add(turns);
+    }
+
+    /// Returns the lateness of all turns.
+    pub(crate) fn lateness(&self) -> Lateness {
+        let Self { late, missed, .. } = self;
+        let [p50, p99] = [50, 99].map(|percent| Duration::from_nanos(late.within(percent)));
+        Lateness { p50, p99, max: Duration::from_nanos(late.most), missed: *missed }
     }
 
     /// Records a turn that took `nanos` nanoseconds.
@@ -87,6 +114,18 @@ impl Counts {
         }
         self.most = self.most.max(nanos);
     }
+
+    /// Returns a bound, in nanoseconds, that this percentage of the values does not exceed: the bound of a class, or
+    /// the maximum value if it is less.
+    fn within(&self, percent: u128) -> u64 {
+        let total: u128 = self.classes.iter().map(|count| u128::from(*count)).sum();
+        let mut so_far = 0;
+        let class = self.classes.iter().position(|count| {
+            so_far += u128::from(*count) * 100;
+            so_far >= total * percent
+        });
+        class.and_then(|class| BOUNDS.get(class)).map_or(self.most, |bound| self.most.min(*bound))
+    }
 }
 
 impl fmt::Display for Timing {
@@ -119,6 +158,23 @@ mod tests {
             assert_eq!(timing.took(took), Ok(()));
         }
         insta::assert_snapshot!(timing);
+    }
+
+    #[test]
+    fn lateness_is_rounded_up_to_the_bound_of_a_class() {
+        let mut timing = Timing::new(100_000_000);
+        assert_eq!(
+            timing.lateness(),
+            Lateness { p50: Duration::ZERO, p99: Duration::ZERO, max: Duration::ZERO, missed: 0 }
+        );
+        (0..98).for_each(|turn| timing.begins(if turn < 50 { 15_000 } else { 30_000 }));
+        timing.begins(150_000);
+        timing.begins(20_000_000_000);
+        timing.misses(199);
+        let [p50, p99] = [20, 200].map(Duration::from_micros);
+        assert_eq!(timing.lateness(), Lateness { p50, p99, max: Duration::from_secs(20), missed: 199 });
+        timing.begins(30_000_000_000);
+        assert_eq!(timing.lateness().p99, Duration::from_secs(30), "beyond the last bound");
     }
 
     #[test]

@@ -83,8 +83,8 @@ struct OnePlan<'t, 'a, 'o> {
 
 impl OnePlan<'_, '_, '_> {
     /// Calls the supervisor at the break after `turns` turns.
-    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool) -> Result<(), RunEnd> {
-        let Orders { pace, end } = self.drive.at_break(turns, t, is_over, self.witnesses.report);
+    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, timing: Option<&Timing>) -> Result<(), RunEnd> {
+        let Orders { pace, end } = self.drive.at_break((turns, t, is_over), self.witnesses.report, timing);
         self.pace = pace.or(self.pace);
         if end && !is_over { Err(RunEnd::Quit) } else { Ok(()) }
     }
@@ -112,10 +112,10 @@ impl Turns for OnePlan<'_, '_, '_> {
         self.drive.exchange()
     }
 
-    fn turn(&mut self, t: Nanos, number: u64) -> Result<TurnEnd, RunEnd> {
+    fn turn(&mut self, t: Nanos, number: u64, timing: Option<&Timing>) -> Result<TurnEnd, RunEnd> {
         self.number = number;
         if number == 0 {
-            self.at_break(0, t, false)?;
+            self.at_break(0, t, false, timing)?;
         }
         let Self { drive, witnesses, limit, transitions, fresh, plan, supervised, .. } = self;
         if let (Some(path), Some((heading, speed))) = (&mut witnesses.path, drive.motion()) {
@@ -154,7 +154,7 @@ impl Turns for OnePlan<'_, '_, '_> {
             witnesses.say(&message);
         }
         let step = self.step(turn)?;
-        self.at_break(number.saturating_add(1), t, step == TurnEnd::Over)?;
+        self.at_break(number.saturating_add(1), t, step == TurnEnd::Over, timing)?;
         Ok(step)
     }
 
@@ -168,9 +168,9 @@ impl Turns for OnePlan<'_, '_, '_> {
         }
     }
 
-    fn ended(&mut self, ending: &RunEnd, t: Nanos) {
+    fn ended(&mut self, ending: &RunEnd, t: Nanos, timing: Option<&Timing>) {
         if *ending != RunEnd::Over {
-            self.drive.at_end(self.number.saturating_add(1), t, self.witnesses.report);
+            self.drive.at_end(self.number.saturating_add(1), t, self.witnesses.report, timing);
         }
         if let Some(log) = &mut self.witnesses.log {
             let cause = cause(ending, self.witnesses.report);

@@ -8,11 +8,12 @@ use std::sync::Arc;
 
 use codespan_reporting::term::termcolor::NoColor;
 use mdle_compiler::alphabet::did_you_mean;
+use mdle_compiler::analysis::analyze;
 use mdle_compiler::diagnostic::{Code, Diagnostic, Sources, judged};
 use mdle_compiler::fsm::{self, Machine};
 use mdle_compiler::load::{self, LoadError, Loaded, NameBudget};
 use mdle_compiler::plan::Bounds;
-use mdle_engine::{CompiledPlans, EngineAlphabet, PlanSource, Plans, StoredPlan};
+use mdle_engine::{CompiledPlans, EngineAlphabet, PlanFacts, PlanSource, Plans, StoredPlan};
 use mdle_files::{FaultyFile, Input, InputError, Target, plan, read_plan};
 use mdle_host::Refusal;
 
@@ -96,9 +97,17 @@ fn compiled<A: EngineAlphabet>(
     };
     let plans = machines.into_iter().map(|(name, machine)| {
         let loaded = Arc::new(load(&machine)?);
-        Ok(StoredPlan { name: name.into(), files: Arc::clone(&files), loaded })
+        // A sent plan is not stored, so that nobody reads its facts.
+        let facts = if is_sent { PlanFacts::default() } else { facts(&machine, &warnings) };
+        Ok(StoredPlan { name: name.into(), files: Arc::clone(&files), loaded, facts })
     });
     Ok(CompiledPlans { plans: plans.collect::<Result<_, String>>()?, warnings })
+}
+
+/// Returns the facts about a plan of the operator; `warnings` are those about its file, as `mdlec check` prints them.
+pub(crate) fn facts(machine: &Machine, warnings: &str) -> PlanFacts {
+    let warnings = if warnings.is_empty() { "no warnings" } else { warnings.trim_end() };
+    PlanFacts { diagnostics: warnings.into(), analysis: analyze(machine).figures().trim_end().into() }
 }
 
 /// The names that plans from other robots may use.
@@ -186,7 +195,7 @@ fn faulty(count: &str, diagnostics: &str) -> String {
 }
 
 /// Renders diagnostics as on a terminal without colours.
-fn rendered(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+pub(crate) fn rendered(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     let mut text = NoColor::new(Vec::new());
     // Writing to a vector cannot fail.
     let _ = sources.write_all(diagnostics, &mut text);

@@ -183,7 +183,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
                 let when = When::of_number(when).unwrap_or(When::Now);
                 self.helm.pilot_mut().plans_mut().replace(plan, when);
             }
-            Change::Limit { .. } => {
+            Change::Limit { .. } | Change::SafetyReset => {
                 if let Some(supervisor) = self.helm.supervisor_mut() {
                     supervisor.repeat(&change);
                 }

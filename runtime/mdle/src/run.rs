@@ -15,7 +15,7 @@ use crate::evidence::{MapFiles, pose};
 use crate::failure::{self, Failure};
 use crate::link::{LinkFile, OpenRouter};
 use crate::modules::{self, AudioSource, HEADING, MapRun, Saved, SoundInput};
-use crate::plans::texts;
+use crate::plans::{self, texts};
 use crate::safety::SafetyFile;
 use crate::scenario;
 use crate::session;
@@ -183,15 +183,18 @@ fn compiled(
     if let Some(name) = wanted {
         input.must_have(name)?;
     }
-    let (plans, diagnostics) = input.compile(&target.alphabet, wanted);
+    let (compiled, diagnostics) = input.compile(&target.alphabet, wanted);
     failure::print(&input.sources, &diagnostics);
     if let Err(sentence) = judged(&diagnostics, arguments.deny_warnings) {
         failure::error(&sentence);
         return Err(Failure::Plan);
     }
-    let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
+    let named = compiled.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
     let named = named.map(|(name, machine)| (name.clone(), (name, machine)));
     let (name, machine) = input.only(named.collect())?;
-    let ready = (linked.load)(&machine, input, target, safety)?;
+    let mut ready = (linked.load)(&machine, input, target, safety)?;
+    if arguments.session.is_some() {
+        ready.describe(plans::facts(&machine, &plans::rendered(&input.sources, &diagnostics)));
+    }
     Ok((name, ready))
 }

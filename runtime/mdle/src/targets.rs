@@ -11,7 +11,7 @@ use mdle_compiler::fsm::Machine;
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::shell::Session;
 use mdle_engine::tree::Desk;
-use mdle_engine::{Engine, EngineAlphabet, Library, StoredPlan};
+use mdle_engine::{Engine, EngineAlphabet, Library, PlanFacts, StoredPlan};
 use mdle_files::{Input, Target};
 use mdle_host::{Call, Program, Refusal, RunTerms, Supervision};
 use mdle_record::{Begin, SafetyTexts};
@@ -79,6 +79,9 @@ pub(crate) trait ReadyPlan {
     /// Sets the sound for the module `heading` in runs of the plan.
     fn hears(&mut self, hearing: Option<SoundInput>);
 
+    /// Sets the facts about the plan that a session shows.
+    fn describe(&mut self, facts: PlanFacts);
+
     /// Runs the plan, which is called `name`, with the modules in `library`.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
 
@@ -145,6 +148,7 @@ struct PlanFor<T, A: Alphabet> {
     loaded: Arc<Loaded<A>>,
     /// Names and texts of the plan's files, its own file first.
     files: Arc<[(String, String)]>,
+    facts: PlanFacts,
     /// The target, for compiling further plans.
     known: Arc<Target>,
     safety: Option<Guarded<A>>,
@@ -169,7 +173,9 @@ impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
     ) -> Result<Engine<A>, Refusal> {
         let mut engine = self.engine(library, terms)?;
         if is_session || self.link.as_ref().is_some_and(LinkFile::takes_plans) {
-            let first = StoredPlan { name: name.into(), files: self.files.clone(), loaded: self.loaded.clone() };
+            let Self { files, loaded, facts, .. } = self;
+            let (files, loaded, facts) = (files.clone(), loaded.clone(), facts.clone());
+            let first = StoredPlan { name: name.into(), files, loaded, facts };
             let robots = self.link.as_ref().map_or_else(Vec::new, LinkFile::robots);
             plans::begin(engine.plans_mut(), first, &self.known, robots)?;
         }
@@ -241,6 +247,10 @@ where
         self.hearing = hearing;
     }
 
+    fn describe(&mut self, facts: PlanFacts) {
+        self.facts = facts;
+    }
+
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
         let plan = || self.loaded.plan();
         let engine = |terms: &RunTerms| self.loading(name, library, terms, false);
@@ -280,7 +290,15 @@ where
 {
     let loaded = Arc::new(load::load::<A>(machine, &input.sources, &target.alphabet)?);
     let safety = safety.map(|safety| safety.compile(target, false)).transpose()?;
-    let files = texts(input).into();
-    let (known, target) = (Arc::clone(target), std::marker::PhantomData);
-    Ok(Box::new(PlanFor::<T, A> { loaded, files, known, safety, link: None, hearing: None, records: None, target }))
+    Ok(Box::new(PlanFor::<T, A> {
+        loaded,
+        files: texts(input).into(),
+        facts: PlanFacts::default(),
+        known: Arc::clone(target),
+        safety,
+        link: None,
+        hearing: None,
+        records: None,
+        target: std::marker::PhantomData,
+    }))
 }

@@ -56,6 +56,8 @@ pub enum Change {
         /// Value of the limit, in SI units.
         value: f64,
     },
+    /// The safety rules were reset: limits have the values of the safety file, and all rules apply again.
+    SafetyReset,
     /// The plan made no turn because no thread was ready for it in time.
     Skipped,
     /// The plan did not finish its turn in time.
@@ -155,6 +157,7 @@ fn put(change: &Change, to: &mut Vec<u8>) {
             to.push(13);
             put_path(name, setpoints, to);
         }
+        Change::SafetyReset => to.push(14),
     }
 }
 
@@ -199,6 +202,7 @@ fn take(from: &mut Bytes<'_>) -> Option<Change> {
             let (name, setpoints) = take_path(from)?;
             Change::Path { name, setpoints }
         }
+        14 => Change::SafetyReset,
         _ => return None,
     })
 }

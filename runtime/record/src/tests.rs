@@ -39,6 +39,7 @@ fn changes() -> Vec<Change> {
         Change::Skipped,
         Change::Late,
         Change::Back,
+        Change::SafetyReset,
         Change::Peer { name: "ada".to_owned(), rounds: 2, state: None },
         Change::Peer { name: "bob".to_owned(), rounds: 1, state: Some(peer_state()) },
         Change::Path {

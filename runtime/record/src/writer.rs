@@ -27,8 +27,6 @@ pub struct RecordFile<W: Write> {
     /// Bytes of an incomplete frame.
     pending: Vec<u8>,
     parts: Parts<W>,
-    /// Number of turns in the chunks that have been written.
-    kept: u64,
 }
 
 /// State of a record that is being written.
@@ -47,8 +45,6 @@ struct Open<W: Write> {
     channels: Channels,
     /// Number of messages so far.
     sequence: u32,
-    /// Number of turns so far.
-    made: u64,
     /// Time at which the current chunk began.
     chunk: Nanos,
     text: String,
@@ -66,13 +62,7 @@ struct Channels {
 impl<W: Write> RecordFile<W> {
     /// Returns the writer of a record to `to`.
     pub fn new(to: W) -> Self {
-        Self { pending: Vec::new(), parts: Parts::Unbegun(Some(to)), kept: 0 }
-    }
-
-    /// Returns the number of turns in the chunks that have been written; these turns can be read even if nothing else
-    /// is written.
-    pub fn turns(&self) -> u64 {
-        self.kept
+        Self { pending: Vec::new(), parts: Parts::Unbegun(Some(to)) }
     }
 
     fn frame(&mut self, tag: Tag, content: &[u8]) -> io::Result<()> {
@@ -82,18 +72,11 @@ impl<W: Write> RecordFile<W> {
                 self.parts = Parts::Begun(Box::new(Open::begin(to, content)?));
                 Ok(())
             }
-            (Parts::Begun(open), Tag::Turn) => {
-                if open.turn(content)? {
-                    self.kept = open.made;
-                }
-                open.made = open.made.saturating_add(1);
-                Ok(())
-            }
+            (Parts::Begun(open), Tag::Turn) => open.turn(content),
             (Parts::Begun(open), Tag::Transition) => open.json(open.channels.transition, content),
             (Parts::Begun(open), Tag::Event) => open.json(open.channels.event, content),
             (Parts::Begun(open), Tag::End) => {
                 open.writer.finish().map_err(unwritten)?;
-                self.kept = open.made;
                 self.parts = Parts::Closed;
                 Ok(())
             }
@@ -148,7 +131,7 @@ impl<W: Write> Open<W> {
         let mut writer = options.create(NoSeek::new(to)).map_err(unwritten)?;
         describe(&mut writer, &turns.begin).map_err(unwritten)?;
         let channels = Channels::add(&mut writer).map_err(unwritten)?;
-        let mut open = Self { writer, turns, channels, sequence: 0, made: 0, chunk: Nanos::ZERO, text: String::new() };
+        let mut open = Self { writer, turns, channels, sequence: 0, chunk: Nanos::ZERO, text: String::new() };
         open.message(open.channels.begin, Nanos::ZERO, content)?;
         // Flushed at once, so that a run that is killed early has a record that can be read.
         open.writer.flush().map_err(unwritten)?;
@@ -161,15 +144,14 @@ impl<W: Write> Open<W> {
         self.writer.write_to_known_channel(&header, data).map_err(unwritten)
     }
 
-    /// Adds a turn; returns `true` if the turns before it have been written as a chunk.
-    fn turn(&mut self, content: &[u8]) -> io::Result<bool> {
+    /// Adds a turn, which may complete a chunk of the turns before it.
+    fn turn(&mut self, content: &[u8]) -> io::Result<()> {
         let turn = self.turns.next(content).map_err(|why| match why {
             Undecoded::Changed | Undecoded::Unreadable => {
                 invalid("the outputs of this robot cannot be recorded exactly")
             }
         })?;
-        let is_full = turn.t.0 >= self.chunk.0.saturating_add(CHUNK);
-        if is_full {
+        if turn.t.0 >= self.chunk.0.saturating_add(CHUNK) {
             self.chunk = turn.t;
             self.writer.flush().map_err(unwritten)?;
         }
@@ -181,7 +163,7 @@ impl<W: Write> Open<W> {
             self.message(id, turn.t, text.as_bytes())?;
         }
         self.text = text;
-        Ok(is_full)
+        Ok(())
     }
 
     fn json(&mut self, channel: u16, content: &[u8]) -> io::Result<()> {

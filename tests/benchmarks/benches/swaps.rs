@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::load::{self, Loaded};
-use mdle_engine::{CompiledPlans, Engine, Library, PlanEvent, PlanSource, StoredPlan, When};
+use mdle_engine::{CompiledPlans, Engine, Library, PlanEvent, PlanFacts, PlanSource, StoredPlan, When};
 use mdle_host::{Microphones, Moment, Pilot as _, RunTerms, StopRequest, Time, Transitions, claim_for_worker};
 use mdle_runtime::{Nanos, Robot as _, Twist};
 use mdle_sim::alphabet::Alphabet;
@@ -117,6 +117,7 @@ fn compiled(source: &PlanSource) -> Result<CompiledPlans<Alphabet>, String> {
         name: "Swapped".into(),
         files: [("swapped".to_owned(), text.clone())].into(),
         loaded: loaded(text)?,
+        facts: PlanFacts::default(),
     };
     Ok(CompiledPlans { plans: vec![plan], warnings: String::new() })
 }

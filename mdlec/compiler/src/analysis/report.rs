@@ -28,7 +28,9 @@ impl Analysis {
         text
     }
 
-    fn figures(&self) -> String {
+    /// Returns the figures of the plan as text for users, without the tables of scopes and atoms.
+    #[must_use]
+    pub fn figures(&self) -> String {
         let Self { plan, states, atom_count, interrupts, depth, loop_depth, transitions, bytes, .. } = self;
         let mut text = String::new();
         let mut line = |name: &str, value: String| {

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::io;
 use std::sync::Arc;
+use std::time::Duration;
 
 use mdle_runtime::{ModuleRead, Nanos};
 
@@ -117,6 +118,14 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     #[must_use]
     pub fn late_turns(&self, name: &str) -> u64 {
         self.module(name).map_or(0, |module| module.late_turns)
+    }
+
+    /// Returns the mean real time that the last turns of a registered module took; newer turns count more. Returns
+    /// `None` before the first turn, and if no registered module has this name.
+    #[must_use]
+    pub fn cost(&self, name: &str) -> Option<Duration> {
+        let cost = self.module(name)?.seat()?.cost();
+        (!cost.is_zero()).then_some(cost)
     }
 
     /// Returns the priority of a module; 0 if no module has this name.

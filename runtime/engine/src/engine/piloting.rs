@@ -112,7 +112,7 @@ impl<A: EngineAlphabet> Engine<A> {
     }
 
     /// Repeats a change of the recorded run before the next turn. The caller has to repeat armed plans (with
-    /// [`Plans::replace`]), the limits of safety rules, and recorded paths, which are part of outputs.
+    /// [`Plans::replace`]), changes of safety rules, and recorded paths, which are part of outputs.
     pub fn repeat(&mut self, change: &Change) {
         match change {
             Change::Cancelled => self.plans.cancel(),
@@ -125,6 +125,7 @@ impl<A: EngineAlphabet> Engine<A> {
             | Change::Files(_)
             | Change::Armed { .. }
             | Change::Limit { .. }
+            | Change::SafetyReset
             | Change::Skipped
             | Change::Late
             | Change::Back

@@ -32,7 +32,7 @@ use peers::PeerRequests;
 pub use running::EngineAlphabet;
 use running::Running;
 use stored::Store;
-pub use stored::{MOST_STORED, StoredPlan};
+pub use stored::{MOST_STORED, PlanFacts, StoredPlan};
 pub(crate) use turns::PlanTurn;
 
 /// Default duration of a new plan's trial; [`Plans::set_trial`] sets another.

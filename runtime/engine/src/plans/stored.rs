@@ -18,12 +18,23 @@ pub struct StoredPlan<A: EngineAlphabet> {
     pub files: Arc<[(String, String)]>,
     /// The plan before it begins.
     pub loaded: Arc<Loaded<A>>,
+    /// Facts about the plan, for the operator.
+    pub facts: PlanFacts,
+}
+
+/// Facts about a plan as text for the operator; a text is empty if it is not known.
+#[derive(Debug, Clone, Default)]
+pub struct PlanFacts {
+    /// Warnings about the plan's file, or a sentence that there are none.
+    pub diagnostics: Arc<str>,
+    /// Figures of the static analysis, as of `mdlec analyze`.
+    pub analysis: Arc<str>,
 }
 
 impl<A: EngineAlphabet> Clone for StoredPlan<A> {
     fn clone(&self) -> Self {
-        let Self { name, files, loaded } = self;
-        Self { name: Arc::clone(name), files: Arc::clone(files), loaded: Arc::clone(loaded) }
+        let Self { name, files, loaded, facts } = self;
+        Self { name: Arc::clone(name), files: Arc::clone(files), loaded: Arc::clone(loaded), facts: facts.clone() }
     }
 }
 

@@ -64,6 +64,7 @@ impl Repeats {
             | Change::RolledBack(_)
             | Change::Trial(_)
             | Change::Limit { .. }
+            | Change::SafetyReset
             | Change::Path { .. } => {}
         }
     }

@@ -7,7 +7,7 @@ use mdle_host::{Intervention, LimitedQuantity, Verdict};
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Nanos, RadiansPerSecond, Twist};
 
-use super::{Fence, Measure, Rules, Then};
+use super::{Fence, Limits, Measure, RuleId, Rules, Then};
 
 /// Speed, in metres per second, below which a robot that a fence has slowed down counts as stopped: 1 cm/s.
 const CREEP: f64 = 0.01;
@@ -18,6 +18,8 @@ const RATES: u32 = 4;
 #[derive(Debug, Clone)]
 pub struct Envelope {
     rules: Rules,
+    /// Limits at the beginning of the run.
+    first_limits: Limits,
     /// Period of a turn, in seconds.
     period: f64,
     /// Input that was sent last.
@@ -32,33 +34,8 @@ pub struct Envelope {
     verdict: Option<(Verdict, RuleId)>,
     /// Quantity that was limited in the last turn; `None` if no quantity was limited.
     limited: Option<LimitedQuantity>,
-    /// Number of turns in which each rule changed the input, in the order of `Envelope::ids`.
+    /// Number of turns in which each rule changed the input, in the order of `Rules::ids`.
     counts: Vec<(RuleId, u64)>,
-}
-
-/// A safety rule.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RuleId {
-    /// The built-in rule that an input consists of finite numbers.
-    Finite,
-    /// The rule `output` of `[stale]`.
-    Stale,
-    /// The rule `module` of `[stale]`.
-    StaleModule,
-    /// The rule `[overrun]`.
-    Overrun,
-    /// The rule `[contact]`.
-    Contact,
-    /// The guard with this number, from 0.
-    Guard(usize),
-    /// The rule `speed` of `[limits]`.
-    Speed,
-    /// The rule `turn_rate` of `[limits]`.
-    TurnRate,
-    /// The rule `acceleration` of `[limits]`.
-    Acceleration,
-    /// The fence with this number, from 0.
-    Fence(usize),
 }
 
 impl Envelope {
@@ -66,6 +43,7 @@ impl Envelope {
     #[must_use]
     pub fn new(rules: Rules, period: Duration) -> Self {
         let mut envelope = Self {
+            first_limits: rules.limits,
             rules,
             period: period.as_secs_f64(),
             last: Twist::default(),
@@ -76,7 +54,7 @@ impl Envelope {
             limited: None,
             counts: Vec::new(),
         };
-        envelope.counts = envelope.ids().map(|id| (id, 0)).collect();
+        envelope.counts = envelope.rules.ids().map(|id| (id, 0)).collect();
         envelope
     }
 
@@ -191,7 +169,7 @@ impl Envelope {
     #[must_use]
     pub fn intervention(&self) -> Option<Intervention<'_>> {
         let Self { verdict, limited, .. } = self;
-        verdict.map(|(verdict, id)| Intervention { verdict, rule: self.name(id), limited: *limited })
+        verdict.map(|(verdict, id)| Intervention { verdict, rule: self.rules.name(id), limited: *limited })
     }
 
     /// Returns the rules.
@@ -206,70 +184,24 @@ impl Envelope {
         &mut self.rules
     }
 
+    /// Resets the rules: limits have their values of the beginning of the run, counts are 0, and rules that have
+    /// replaced a plan apply again. Returns the names of these rules.
+    pub fn reset(&mut self) -> Vec<String> {
+        self.rules.limits = self.first_limits;
+        self.counts.iter_mut().for_each(|(_, count)| *count = 0);
+        let spent = std::mem::take(&mut self.spent);
+        spent.into_iter().map(|id| self.rules.name(id).to_owned()).collect()
+    }
+
+    /// Returns the limits at the beginning of the run.
+    #[must_use]
+    pub fn first_limits(&self) -> Limits {
+        self.first_limits
+    }
+
     /// Returns each rule with the number of turns in which it changed the input.
     pub fn counts(&self) -> impl Iterator<Item = (RuleId, u64)> {
         self.counts.iter().copied()
-    }
-
-    /// Returns the name of a rule as shown in reports.
-    #[must_use]
-    pub fn name(&self, id: RuleId) -> &str {
-        match id {
-            RuleId::Finite => "not a number",
-            RuleId::Stale => "stale",
-            RuleId::StaleModule => "stale module",
-            RuleId::Overrun => "overrun",
-            RuleId::Contact => "contact",
-            RuleId::Guard(number) => self.rules.guards.get(number).map_or("", |guard| &guard.name),
-            RuleId::Speed => "speed",
-            RuleId::TurnRate => "turn_rate",
-            RuleId::Acceleration => "acceleration",
-            RuleId::Fence(number) => self.rules.fences.get(number).map_or("", |fence| &fence.name),
-        }
-    }
-
-    /// Returns the consequence of a rule, in the words of a safety file; `None` for a rule that limits inputs.
-    #[must_use]
-    pub fn then(&self, id: RuleId) -> Option<&str> {
-        let rules = &self.rules;
-        let then = match id {
-            RuleId::Stale => rules.stale.map(|(_, then)| then),
-            RuleId::StaleModule => rules.stale_module.map(|(_, then)| then),
-            RuleId::Overrun => rules.overrun.map(|(_, then)| then),
-            RuleId::Contact => rules.contact,
-            RuleId::Guard(number) => rules.guards.get(number).map(|guard| guard.then),
-            RuleId::Finite | RuleId::Speed | RuleId::TurnRate | RuleId::Acceleration | RuleId::Fence(_) => None,
-        }?;
-        Some(match then {
-            Then::HoldForward => "hold forward",
-            Then::Hold => "hold",
-            Then::End => "end",
-            Then::Divert(plan) => rules.plans.get(plan).map_or("", |plan| &plan.file),
-        })
-    }
-
-    /// Returns the condition of a guard, in the plan language; `None` for another rule.
-    #[must_use]
-    pub fn when(&self, id: RuleId) -> Option<&str> {
-        let RuleId::Guard(number) = id else { return None };
-        self.rules.guards.get(number).map(|guard| guard.when.text.as_str())
-    }
-
-    /// Returns the rules that can change an input.
-    fn ids(&self) -> impl Iterator<Item = RuleId> + use<> {
-        let Rules { fences, contact, stale, stale_module, overrun, guards, .. } = &self.rules;
-        let own = [
-            (true, RuleId::Finite),
-            (stale.is_some(), RuleId::Stale),
-            (stale_module.is_some(), RuleId::StaleModule),
-            (overrun.is_some(), RuleId::Overrun),
-            (contact.is_some(), RuleId::Contact),
-            (true, RuleId::Speed),
-            (true, RuleId::TurnRate),
-            (true, RuleId::Acceleration),
-        ];
-        let own = own.into_iter().filter_map(|(is_there, id)| is_there.then_some(id));
-        own.chain((0..guards.len()).map(RuleId::Guard)).chain((0..fences.len()).map(RuleId::Fence))
     }
 }
 

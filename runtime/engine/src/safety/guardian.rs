@@ -18,6 +18,8 @@ pub struct Guardian<A: Alphabet> {
     has_begun: bool,
     /// Warnings that have not been reported yet.
     warnings: Vec<String>,
+    /// `true` if the rules were reset after the last [`Guardian::changes_since`].
+    is_reset: bool,
 }
 
 impl<A: Alphabet> Guardian<A> {
@@ -25,7 +27,7 @@ impl<A: Alphabet> Guardian<A> {
     #[must_use]
     pub fn new(rules: Rules, conditions: &Conditions<A>, period: Duration) -> Self {
         let (envelope, conditions) = (Envelope::new(rules, period), conditions.watch());
-        Self { envelope, conditions, has_begun: false, warnings: Vec::new() }
+        Self { envelope, conditions, has_begun: false, warnings: Vec::new(), is_reset: false }
     }
 
     /// Returns the envelope.
@@ -46,10 +48,21 @@ impl<A: Alphabet> Guardian<A> {
         self.warnings.drain(..).for_each(|warning| say(&format!("warning: {warning}")));
     }
 
-    /// Returns a change for each limit that differs from `recorded`, and updates `recorded`.
-    pub(crate) fn changes_since(&self, recorded: &mut Limits) -> Vec<Change> {
+    /// Resets the rules, as [`Envelope::reset`] does.
+    pub(crate) fn reset(&mut self) -> Vec<String> {
+        self.is_reset = true;
+        self.envelope.reset()
+    }
+
+    /// Returns a change if the rules were reset since the last call, and a change for each limit that then differs from
+    /// `recorded`; updates `recorded`.
+    pub(crate) fn changes_since(&mut self, recorded: &mut Limits) -> Vec<Change> {
         let mut limits = self.envelope.rules().limits;
         let mut changes = Vec::new();
+        if std::mem::take(&mut self.is_reset) {
+            *recorded = self.envelope.first_limits();
+            changes.push(Change::SafetyReset);
+        }
         for measure in Measure::ALL {
             let (before, value) = (measure.of(recorded), *measure.of(&mut limits));
             if before.to_bits() != value.to_bits() {
@@ -95,6 +108,9 @@ where
     }
 
     fn repeat(&mut self, change: &Change) {
+        if *change == Change::SafetyReset {
+            let _ = self.envelope.reset();
+        }
         if let Change::Limit { key, value } = change
             && let Some(measure) = Measure::ALL.into_iter().find(|measure| measure.key() == key)
         {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mdle_host::{Break, Pace, Pilot, Time};
+use mdle_host::{Break, Lateness, Pace, Pilot, Time};
 use mdle_quantity::Quantity;
 use mdle_runtime::Nanos;
 
@@ -10,6 +10,8 @@ use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
 /// Kind of attributes in seconds.
 const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
+/// Kind of attributes in milliseconds.
+const MILLISECONDS: Kind = Kind::Quantity(Quantity::Time, "ms");
 
 /// The clock of a session.
 #[derive(Debug)]
@@ -137,6 +139,13 @@ fn said<B: Pilot>(moment: &Break<'_, B>) -> String {
     format!("{turns} {word}, {t}{over}")
 }
 
+/// Returns the values about the lateness of turns; a simulated robot has none.
+fn late(lateness: Option<Lateness>) -> [Option<Value>; 4] {
+    let Some(Lateness { p50, p99, max, missed }) = lateness else { return [const { None }; 4] };
+    let [p50, p99, max] = [p50, p99, max].map(|time| Some(Value::milliseconds(time)));
+    [p50, p99, max, Some(Value::count(missed))]
+}
+
 impl<B: Pilot> Served<Break<'_, B>> for SessionClock {
     fn nodes(&self, _: &Break<'_, B>) -> Vec<(String, Node)> {
         let nodes = [
@@ -148,6 +157,10 @@ impl<B: Pilot> Served<Break<'_, B>> for SessionClock {
                 Node::setting(Kind::Text, Role::Tune, "pace of simulated time: a multiple of real time, or `max`"),
             ),
             ("state", Node::reading(Kind::Text, "`runs` or `stands`")),
+            ("late/p50", Node::reading(MILLISECONDS, "half of the turns of a real robot began at most this late")),
+            ("late/p99", Node::reading(MILLISECONDS, "99 of 100 turns of a real robot began at most this late")),
+            ("late/max", Node::reading(MILLISECONDS, "maximum time by which a turn of a real robot began late")),
+            ("missed", Node::reading(Kind::Integer, "number of turns that the turn before them left no time for")),
             ("pause", Node::method(Role::Tune, "stops simulated time after this turn")),
             ("resume", Node::method(Role::Tune, "lets simulated time go on")),
             ("step", Node::method(Role::Tune, "makes one turn, or as many as the argument says, and stops the time")),
@@ -176,6 +189,7 @@ impl<B: Pilot> Served<Break<'_, B>> for SessionClock {
             Some(Value::Text(pace.into())),
             Some(Value::text(state)),
         ]);
+        to.extend(late(moment.lateness()));
         to.extend([const { None }; 4]);
     }
 

@@ -14,13 +14,23 @@ use crate::module::{About, PLAN, Refusal};
 use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
+/// Reading of the time that a module takes.
+pub(super) const COST: (&str, Node) = (
+    ".cost",
+    Node::reading(
+        Kind::Quantity(Quantity::Time, "ms"),
+        "mean time that the last turns of the module took, in real time",
+    ),
+);
+
 /// Methods and readings that every module has, in the order of their values.
-const OWN: [(&str, Node); 8] = [
+const OWN: [(&str, Node); 9] = [
     (
         ".state",
         Node::reading(Kind::Text, "state of the module: `active`, `stopped`, `late`, `given up`, `failed`, `ended`"),
     ),
     (".late", Node::reading(Kind::Integer, "number of turns that ended without the module because it was late")),
+    COST,
     (".reads", Node::reading(Kind::Text, "attributes of other modules that the module reads")),
     (
         ".priority",
@@ -90,6 +100,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for ModulesPart {
             let reads: Vec<_> = modules.reads(name).map(AttributeName::to_string).collect();
             let fault = Some(modules.fault(name)).filter(|fault| !fault.is_empty());
             to.extend([Some(Value::text(state_text(state))), Some(Value::count(modules.late_turns(name)))]);
+            to.push(modules.cost(name).map(Value::milliseconds));
             to.push(Some(Value::Text(reads.join(", ").into())));
             to.extend([Some(Value::Integer(modules.priority(name).into())), fault.map(Value::text)]);
             to.extend([None, None, None]);

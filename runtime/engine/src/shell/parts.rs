@@ -85,6 +85,19 @@ where
     }
 }
 
+/// Method that resets the safety rules.
+const RESET: &str = "/safety/reset";
+
+/// Returns the answer to a reset of the safety rules; `again` names the rules that had replaced a plan.
+fn after_reset(again: &[String]) -> String {
+    let limits = "the limits are those of the safety file";
+    match again {
+        [] => limits.to_owned(),
+        [rule] => format!("{limits}, and {rule} applies again"),
+        rules => format!("{limits}, and {} apply again", rules.join(", ")),
+    }
+}
+
 impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
     fn nodes(&self, _: &Break<'_, B>) -> Vec<(String, Node)> {
         let limits = Measure::ALL.map(|measure| {
@@ -92,33 +105,36 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
             let node = Node::setting(Kind::Quantity(quantity, unit), Role::Admin, "limit of inputs");
             (format!("/safety/limits/{}", measure.key()), node)
         });
-        let Some(envelope) = self.0.as_ref().map(Guardian::envelope) else { return limits.into() };
+        let reset = Node::method(Role::Admin, "takes the limits of the safety file, and lets all rules apply again");
+        let own = limits.into_iter().chain([(RESET.to_owned(), reset)]);
+        let Some(envelope) = self.0.as_ref().map(Guardian::envelope) else { return own.collect() };
         let count = Node::reading(Kind::Integer, "number of turns in which the rule has decided");
         let when = Node::reading(Kind::Text, "condition of the guard");
         let then = Node::reading(Kind::Text, "consequence of the rule, in the words of a safety file");
         let rules = envelope.counts().flat_map(|(id, _)| {
             let own = [
                 Some(("count", count)),
-                envelope.when(id).map(|_| ("when", when)),
-                envelope.then(id).map(|_| ("then", then)),
+                envelope.rules().when(id).map(|_| ("when", when)),
+                envelope.rules().then(id).map(|_| ("then", then)),
             ];
-            let folder = format!("/safety/rules/{}", envelope.name(id).replace(' ', "_"));
+            let folder = format!("/safety/rules/{}", envelope.rules().name(id).replace(' ', "_"));
             own.into_iter().flatten().map(move |(name, node)| (format!("{folder}/{name}"), node))
         });
-        limits.into_iter().chain(rules).collect()
+        own.chain(rules).collect()
     }
 
     fn values(&self, _: &Break<'_, B>, to: &mut Vec<Option<Value>>) {
         let Some(envelope) = self.0.as_ref().map(Guardian::envelope) else {
-            return to.extend(Measure::ALL.map(|_| None));
+            return to.extend([const { None }; Measure::ALL.len() + 1]);
         };
         let mut limits: Limits = envelope.rules().limits;
         for measure in Measure::ALL {
             let value = *measure.of(&mut limits);
             to.push(Some(Value::Quantity(measure.in_its_unit(value), measure.quantity().1)));
         }
+        to.push(None);
         to.extend(envelope.counts().flat_map(|(id, count)| {
-            let words = [envelope.when(id), envelope.then(id)].into_iter().flatten();
+            let words = [envelope.rules().when(id), envelope.rules().then(id)].into_iter().flatten();
             [Value::count(count)].into_iter().chain(words.map(Value::text)).map(Some)
         }));
     }
@@ -129,6 +145,13 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
         if self.0.is_none() {
             let sentence = format!("`{path}`: this session has no safety rules: begin it with `--safety FILE`");
             return reply.answer(Answer::Refused(sentence));
+        }
+        if let (RESET, Some(guardian), Change::Call(arguments)) = (path, &mut self.0, change) {
+            return reply.answer(if arguments.is_empty() {
+                Answer::Done(after_reset(&guardian.reset()))
+            } else {
+                Answer::Refused(format!("`{path}` takes no arguments"))
+            });
         }
         let (Some(measure), Some(guardian), Change::Set(text)) = (measure, &mut self.0, change) else {
             return reply.answer(Answer::Refused(format!("`{path}` is read-only")));

@@ -2,14 +2,17 @@
 //! III-D and Fig. 7).
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::Duration;
 
 use mdle_host::{Break, Pilot as _, PlanPosition};
 use mdle_quantity::Quantity;
 use mdle_runtime::Nanos;
 
+use super::modules::COST;
 use crate::Engine;
 use crate::attribute::AttributeName;
+use crate::module::PLAN;
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
@@ -18,7 +21,7 @@ const TAKEN: &str = "another plan takes its place";
 const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
 
 /// Attributes of `/usr/mdle`, in the order of [`Served::values`].
-const OWN: [(&str, Node); 13] = [
+const OWN: [(&str, Node); 14] = [
     (
         "main",
         Node::setting(Kind::Text, Role::Swap, "name of the plan that drives; a stored plan, or a text, replaces it"),
@@ -26,6 +29,7 @@ const OWN: [(&str, Node); 13] = [
     ("armed", Node::reading(Kind::Text, "plan that is to follow, and when")),
     ("on_trial", Node::reading(Kind::Flag, "`true` while `rollback` leads back to the plan before")),
     ("trial", Node::setting(SECONDS, Role::Swap, "time for which a plan that takes over is on trial")),
+    COST,
     ("atom", Node::reading(Kind::Text, "law of the current atom")),
     ("place", Node::reading(Kind::Text, "place of the atom: file, line, and the scopes around it")),
     ("since", Node::reading(Kind::Text, "why the atom runs")),
@@ -135,6 +139,8 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
         let stored = moment.pilot.plans().stored().flat_map(|plan| {
             let nodes = [
                 ("text", Node::reading(Kind::Text, "text of the plan's file")),
+                ("diagnostics", Node::reading(Kind::Text, "warnings about the plan's file")),
+                ("analysis", Node::reading(Kind::Text, "figures of the plan, as of `mdlec analyze`")),
                 ("reads", Node::reading(Kind::Text, "attributes of modules that the plan reads")),
                 (
                     "run",
@@ -158,6 +164,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
             armed,
             Some(Value::Flag(plans.trial_ends().is_some())),
             Some(Value::Quantity(plans.trial().seconds(), "s")),
+            moment.pilot.modules().cost(PLAN).map(Value::milliseconds),
         ]);
         match moment.position() {
             Some(place) => to.extend(standing(&place, moment.t.since(moment.pilot.zero())).map(Some)),
@@ -167,7 +174,10 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
         to.extend(plans.stored().flat_map(|plan| {
             let reads = plan.loaded.reads().iter();
             let reads: Vec<_> = reads.map(|read| AttributeName::new(read.module, read.attribute).to_string()).collect();
-            [Some(Value::text(plan.text())), Some(Value::Text(reads.join(", ").into())), None, None]
+            let facts = [&plan.facts.diagnostics, &plan.facts.analysis];
+            let [diagnostics, analysis] = facts.map(|text| (!text.is_empty()).then(|| Value::Text(Arc::clone(text))));
+            let reads = Some(Value::Text(reads.join(", ").into()));
+            [Some(Value::text(plan.text())), diagnostics, analysis, reads, None, None]
         }));
     }
 

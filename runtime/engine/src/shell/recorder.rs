@@ -3,20 +3,21 @@
 //! A separate thread opens and writes the file, so a turn of a real robot never waits for the file. Turns that do not
 //! fit into the queue are omitted from the record, and counted.
 
+mod writer;
+
 use std::any::Any;
-use std::fs::File;
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{Receiver, SyncSender, channel, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use mdle_host::{Break, RunTerms, Time};
 use mdle_record::frames::Frames;
-use mdle_record::{Applied, Begin, RecordFile, TurnMade};
+use mdle_record::{Applied, Begin, TurnMade};
 use mdle_runtime::{Compass, Nanos, Sensed, Twist};
+
+use writer::{Order, Progress, write_all};
 
 use crate::engine::Engine;
 use crate::plans::EngineAlphabet;
@@ -52,22 +53,6 @@ pub(super) struct RecorderPart {
 struct Tape {
     frames: Frames,
     has_begun: bool,
-}
-
-/// Progress of the thread that writes a record.
-#[derive(Debug, Default)]
-struct Progress {
-    bytes: AtomicU64,
-    /// Reason why writing has failed, and the number of turns in the file; `None` if writing has not failed.
-    fault: Mutex<Option<(String, u64)>>,
-}
-
-/// An order for the thread that writes records.
-#[derive(Debug)]
-enum Order {
-    Open(PathBuf),
-    Write(Vec<u8>),
-    Close,
 }
 
 impl RecorderPart {
@@ -206,60 +191,6 @@ impl Drop for RecorderPart {
         while self.thread.as_ref().is_some_and(|thread| !thread.is_finished()) && begun.elapsed() < AT_THE_END {
             thread::sleep(Duration::from_millis(1));
         }
-    }
-}
-
-/// Carries out orders until the channel is closed.
-fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), String>>, progress: &Arc<Progress>) {
-    let mut record: Option<RecordFile<CountingFile>> = None;
-    for order in orders {
-        let written = match order {
-            Order::Open(path) => {
-                progress.bytes.store(0, Ordering::Relaxed);
-                let file = created(&path);
-                let _ = opened.send(file.as_ref().map(|_| ()).map_err(Clone::clone));
-                record = file.ok().map(|file| RecordFile::new(CountingFile { file, progress: Arc::clone(progress) }));
-                Ok(())
-            }
-            Order::Write(bytes) => record.as_mut().map_or(Ok(()), |record| record.write_all(&bytes)),
-            Order::Close => {
-                record = None;
-                Ok(())
-            }
-        };
-        if let Err(error) = written {
-            let turns = record.take().map_or(0, |record| record.turns());
-            *progress.fault.lock().unwrap_or_else(PoisonError::into_inner) = Some((error.to_string(), turns));
-        }
-    }
-}
-
-/// Creates the file of a record; fails if the file already exists.
-fn created(path: &Path) -> Result<File, String> {
-    File::create_new(path).map_err(|error| {
-        if error.kind() == io::ErrorKind::AlreadyExists {
-            format!("{} is there already: name a new file", path.display())
-        } else {
-            format!("{} cannot be written: {error}", path.display())
-        }
-    })
-}
-
-/// A file that counts the bytes written to it.
-struct CountingFile {
-    file: File,
-    progress: Arc<Progress>,
-}
-
-impl Write for CountingFile {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = self.file.write(bytes)?;
-        self.progress.bytes.fetch_add(u64::try_from(written).unwrap_or(u64::MAX), Ordering::Relaxed);
-        Ok(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
     }
 }
 

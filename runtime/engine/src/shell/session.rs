@@ -89,6 +89,7 @@ where
     }
 
     fn at_break(&mut self, moment: &mut Break<'_, Engine<A>>) -> Orders {
+        self.desk.begin_break();
         self.parts.recorder.made(moment);
         self.parts.recorded = moment.turns;
         self.parts.clock.made(moment);
@@ -118,7 +119,7 @@ where
     }
 
     fn take_changes(&mut self) -> Vec<Change> {
-        let Some((recorded, guardian)) = self.recorded.as_mut().zip(self.parts.safety.0.as_ref()) else {
+        let Some((recorded, guardian)) = self.recorded.as_mut().zip(self.parts.safety.0.as_mut()) else {
             return Vec::new();
         };
         guardian.changes_since(recorded)

@@ -80,6 +80,11 @@ impl Desk {
         (hub, desk)
     }
 
+    /// Notes that a break begins, before anything changes: the last snapshot is out of date from now on.
+    pub fn begin_break(&self) {
+        self.shared.is_current.store(false, Ordering::SeqCst);
+    }
+
     /// Carries out the waiting changes; returns `true` if there were any.
     pub fn serve<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M) -> bool {
         let mut served = false;
@@ -92,7 +97,9 @@ impl Desk {
 
     /// Waits for a change, at most for this time, and carries it out; returns `true` if there was one.
     pub fn wait<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M, time: Duration) -> bool {
-        match self.requests.recv_timeout(time) {
+        let request = self.requests.recv_timeout(time);
+        self.begin_break();
+        match request {
             Ok(pending) => return self.carry_out(pending, parts, moment),
             Err(RecvTimeoutError::Timeout) => {}
             // Without front ends, no request can arrive.
@@ -188,6 +195,7 @@ impl Desk {
         if let Ok(mut kept) = self.shared.snapshot.try_lock() {
             self.shared.wanted.store(false, Ordering::SeqCst);
             *kept = snapshot;
+            self.shared.is_current.store(true, Ordering::SeqCst);
             self.shared.changed.notify_all();
         }
     }

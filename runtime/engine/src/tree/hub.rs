@@ -164,12 +164,17 @@ impl Hub {
         }
     }
 
-    /// Returns a snapshot that was taken after the call. Returns the last snapshot if the robot makes no turn within
-    /// [`PATIENCE`] or the run has ended, and `None` if there is no snapshot.
+    /// Returns a snapshot of the present state: the last snapshot if no break has begun since, because nothing changes
+    /// between two breaks, and otherwise one that was taken after the call. Returns the last snapshot also if the robot
+    /// makes no turn within [`PATIENCE`] or the run has ended, and `None` if there is no snapshot.
     fn snapshot(&self) -> Option<Arc<Snapshot>> {
         let mut kept = self.lock();
         let before = kept.number;
+        // Who has read once often reads again: the next break makes a snapshot as well.
         self.shared.wanted.store(true, Ordering::SeqCst);
+        if self.shared.is_current.load(Ordering::SeqCst) {
+            return Some(Arc::clone(&kept));
+        }
         // Wakes a desk that waits for a request while the clock is paused.
         let request = Request { path: String::new(), operation: Operation::Get, role: Role::View };
         let _ = self.queue.try_send(Pending { request, reply: channel().0 });

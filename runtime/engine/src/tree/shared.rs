@@ -24,6 +24,8 @@ pub(super) struct Snapshot {
 pub(super) struct Shared {
     pub(super) snapshot: Mutex<Arc<Snapshot>>,
     pub(super) changed: Condvar,
+    /// `true` from the end of a break whose state the snapshot shows until the next break begins.
+    pub(super) is_current: AtomicBool,
     /// `true` if a front end waits for a snapshot.
     pub(super) wanted: AtomicBool,
     pub(super) ended: AtomicBool,

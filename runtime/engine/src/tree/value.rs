@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Write as _};
 use std::sync::Arc;
+use std::time::Duration;
 
 use mdle_quantity::Quantity;
 
@@ -33,6 +34,12 @@ impl Value {
     #[must_use]
     pub fn text(text: &str) -> Self {
         Self::Text(text.into())
+    }
+
+    /// Returns a time as a value in milliseconds.
+    #[must_use]
+    pub fn milliseconds(time: Duration) -> Self {
+        Self::Quantity(time.as_secs_f64() * 1e3, "ms")
     }
 
     /// Returns a count as a value.

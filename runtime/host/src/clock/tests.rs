@@ -39,6 +39,7 @@ fn a_late_robot_skips_ahead() {
     let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, None);
     let begins = [101, 250, 10].map(|took| next_after(&mut clock, took));
     assert_eq!(begins, [200, 500, 600]);
+    assert_eq!(clock.timing().map(|timing| timing.lateness().missed), Some(3));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use mdle_compiler::load::{self, LoadedPlan};
-use mdle_engine::{Engine, EngineAlphabet, Library, StoredPlan};
+use mdle_engine::{Engine, EngineAlphabet, Library, PlanFacts, StoredPlan};
 use mdle_files::Target;
 use mdle_host::{AfterPlan, Call, Moment, Pilot, PilotFault, RunTerms, Transitions};
 use mdle_record::Change;
@@ -79,7 +79,8 @@ where
 
 fn ready_look<'l, A: EngineAlphabet>(look: &'l Look, target: &Target) -> Result<ReadyLook<'l, A>, Failure> {
     let loaded = Arc::new(load::load::<A>(&look.machine, &look.input.sources, &target.alphabet)?);
-    let plan = StoredPlan { name: LOOK.into(), files: texts(&look.input).into(), loaded };
+    let (files, facts) = (texts(&look.input).into(), PlanFacts::default());
+    let plan = StoredPlan { name: LOOK.into(), files, loaded, facts };
     Ok(ReadyLook { plan, maps: &look.maps })
 }
 
@@ -92,7 +93,8 @@ impl<A: EngineAlphabet> ReadyLook<'_, A> {
 
 fn ready<A: EngineAlphabet>(leg: &Leg, target: &Arc<Target>) -> Result<ReadyLeg<A>, Failure> {
     let loaded = Arc::new(load::load::<A>(&leg.machine, &leg.input.sources, &target.alphabet)?);
-    let plan = StoredPlan { name: leg.name.as_str().into(), files: texts(&leg.input).into(), loaded };
+    let (files, facts) = (texts(&leg.input).into(), PlanFacts::default());
+    let plan = StoredPlan { name: leg.name.as_str().into(), files, loaded, facts };
     let (graph, target) = (leg.graph.clone(), Arc::clone(target));
     Ok(ReadyLeg { edge: leg.edge.clone(), turned: leg.turned, graph, target, plan })
 }
@@ -111,7 +113,8 @@ impl<A: EngineAlphabet> ReadyLeg<A> {
         let loaded = recorded_files::compiled(&files, Some(name), &self.target)
             .and_then(|(machine, sources)| Ok(load::load::<A>(&machine, &sources, &self.target.alphabet)?));
         let loaded = loaded.map_err(|_| format!("{name} cannot be turned by {turned} degrees"))?;
-        Ok(StoredPlan { name: Arc::clone(name), files: files.into(), loaded: Arc::new(loaded) })
+        let (loaded, facts) = (Arc::new(loaded), PlanFacts::default());
+        Ok(StoredPlan { name: Arc::clone(name), files: files.into(), loaded, facts })
     }
 }
 
