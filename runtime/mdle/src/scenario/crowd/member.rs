@@ -4,16 +4,17 @@ use std::sync::Arc;
 
 use mdle_compiler::load::{Loaded, LoadedPlan};
 use mdle_runtime::{Machine, Nanos, Pose, Robot as _, Turn, Twist};
-use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Footprint, Others, Simulated};
 
+use super::alphabet::CrowdAlphabet;
 use super::recorded::RecordedMember;
 
 /// A robot of a crowd.
 pub(super) struct Member {
-    robot: Simulated,
+    /// On the heap, so that the robots of a large crowd need not be moved from list to list.
+    robot: Box<Simulated>,
     /// The running plan; `None` before it begins.
-    machine: Option<Box<Machine<LoadedPlan<SimAlphabet>>>>,
+    machine: Option<Box<Machine<LoadedPlan<CrowdAlphabet>>>>,
     input: Twist,
     /// `true` once the plan is over.
     pub(super) is_over: bool,
@@ -25,7 +26,7 @@ pub(super) struct Member {
 }
 
 impl Member {
-    pub(super) fn new(robot: Simulated, record: Option<RecordedMember>) -> Self {
+    pub(super) fn new(robot: Box<Simulated>, record: Option<RecordedMember>) -> Self {
         let record = record.map(Box::new);
         Self { robot, machine: None, input: Twist::default(), is_over: false, has_touched: false, way: 0.0, record }
     }
@@ -59,7 +60,7 @@ impl Member {
     }
 
     /// Makes the turn of the plan at time `t`, with the robots in `others` nearby.
-    pub(super) fn turn(&mut self, t: Nanos, plan: &Arc<Loaded<SimAlphabet>>, others: &mut Others) {
+    pub(super) fn turn(&mut self, t: Nanos, plan: &Arc<Loaded<CrowdAlphabet>>, others: &mut Others) {
         self.robot.swap_others(others);
         let y = self.robot.senses();
         self.robot.swap_others(others);
@@ -123,7 +124,7 @@ mod tests {
         let make = Make { body: Body::Ideal, without: Vec::new(), seed: None };
         let robot = Simulated::with(&make, &world, start, Duration::from_millis(100)).unwrap();
         let log = env::temp_dir().join(format!("mdle-crowd-{}.mcap", process::id()));
-        let mut member = Member::new(robot, RecordedMember::create(&log, 1, Begin::default()).ok());
+        let mut member = Member::new(Box::new(robot), RecordedMember::create(&log, 1, Begin::default()).ok());
         member.input.v = MetersPerSecond(f64::NAN);
         member.moves(Nanos(100_000_000), &mut Others::default());
         member.stop(Nanos(200_000_000));
