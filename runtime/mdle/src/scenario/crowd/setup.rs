@@ -15,6 +15,7 @@ use super::super::files::Files;
 use super::super::records::begin;
 use super::super::setup::{self, SetupError};
 use super::alphabet::CrowdAlphabet;
+use super::member::Member;
 use super::places::{Places, hall};
 use super::recorded::RecordedMember;
 
@@ -27,7 +28,7 @@ const SPACING: f64 = 2.0;
 
 /// A crowd.
 pub(in super::super) struct CrowdSetup {
-    pub(super) robots: Vec<Box<Simulated>>,
+    pub(super) robots: Vec<Member>,
     pub(super) plan: Arc<Loaded<CrowdAlphabet>>,
     /// Names and texts of the plan's files, the plan's own file first.
     files: Vec<(String, String)>,
@@ -127,7 +128,7 @@ fn robots(
     from: &Files,
     seed: Option<u64>,
     period: Duration,
-) -> Result<Vec<Box<Simulated>>, SetupError> {
+) -> Result<Vec<Member>, SetupError> {
     let body = setup::body(crowd.body.as_ref())?;
     let count = *crowd.robots.get_ref();
     let spacing = crowd.spacing.as_ref().map(spacing).transpose()?.unwrap_or(SPACING);
@@ -145,12 +146,12 @@ fn robots(
     let mut places = Places::of(&world, spacing, seed.unwrap_or_default());
     let first = places.find_map(|start| Simulated::with(&make, &world, start, period).ok());
     let Some(first) = first else { return Err(no_room(crowd, 0, spacing).into()) };
-    let mut robots = vec![Box::new(first)];
+    let mut robots = vec![Member::new(first)];
     while (robots.len() as u64) < count {
         let (number, first) = (robots.len() as u64, robots.first());
-        let next = first.and_then(|first| places.find_map(|start| first.another(&world, start, seeded(number)).ok()));
+        let next = first.and_then(|first| places.find_map(|start| first.another(&world, start, seeded(number))));
         let Some(robot) = next else { return Err(no_room(crowd, number, spacing).into()) };
-        robots.push(Box::new(robot));
+        robots.push(robot);
     }
     Ok(robots)
 }

@@ -58,8 +58,8 @@ impl Turns {
         let CrowdSetup { robots, plan, threads, .. } = setup;
         let is_recorded = !records.is_empty();
         let mut records = records.into_iter();
-        let (hears, touches) = robots.first().map_or((0.0, 0.0), |robot| (robot.hears(), robot.touches()));
-        let members = robots.into_iter().map(|robot| Mutex::new(Member::new(robot, records.next())));
+        let (hears, touches) = robots.first().map_or((0.0, 0.0), Member::reaches);
+        let members = robots.into_iter().map(|robot| Mutex::new(robot.recorded(records.next())));
         let members: Vec<_> = members.collect();
         let threads = threads.min(members.len().div_ceil(FOR_A_THREAD));
         Self { members, plan, threads, is_recorded, hears, touches }
