@@ -32,12 +32,18 @@ struct Echo {
 /// comes. The person would pass ahead of the robot if it stood still, but may meet it if it drove on at `speed`, in
 /// m/s.
 pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> Option<f64> {
-    (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, here, speed)).reduce(f64::max)
+    let ahead = libm::sincos(here.theta.0);
+    (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, (here, ahead), speed)).reduce(f64::max)
 }
 
 /// Returns the time, in seconds, until a person heard in all kept pings of `sonar` has crossed the way; `None` if there
-/// is no such person. The conditions are those of [`crosses`].
-fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64) -> Option<f64> {
+/// is no such person. The conditions are those of [`crosses`]. `sin` and `cos` belong to the heading of `here`.
+fn comes<Y: DiffDrive + SonarRing>(
+    y: &Y,
+    sonar: SonarId,
+    (here, (sin, cos)): (Pose, (f64, f64)),
+    speed: f64,
+) -> Option<f64> {
     const { assert!(PINGS_KEPT == 3) };
     if sonar.bearing().wrapped().0.abs() > core::f64::consts::FRAC_PI_2 {
         return None;
@@ -51,7 +57,6 @@ fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64
     if !(is_straight(old, middle) && is_straight(middle, new)) {
         return None;
     }
-    let (sin, cos) = libm::sincos(here.theta.0);
     let echo = |(ping, range): (&Ping, Meters)| {
         let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
         let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));

@@ -16,6 +16,8 @@ const ROWS: usize = CELLS as usize;
 const BYTES: usize = ROWS / 2;
 /// Evidence of an unknown cell.
 const UNKNOWN: u8 = 4;
+/// Evidence of a row of unknown cells.
+const UNKNOWN_ROW: [u8; BYTES] = [UNKNOWN | UNKNOWN << 4; BYTES];
 /// Evidence from which a cell is occupied.
 const OCCUPIED: u8 = 8;
 /// Evidence that an echo adds.
@@ -86,12 +88,8 @@ pub(crate) struct Map {
 }
 
 impl Map {
-    pub(crate) const EMPTY: Self = Self {
-        evidence: [[UNKNOWN | UNKNOWN << 4; BYTES]; ROWS],
-        corner: Cell { x: 0, y: 0 },
-        taken: [None; THIRDS],
-        third: 0,
-    };
+    pub(crate) const EMPTY: Self =
+        Self { evidence: [UNKNOWN_ROW; ROWS], corner: Cell { x: 0, y: 0 }, taken: [None; THIRDS], third: 0 };
 
     /// Updates the map with the pings since the last turn; the robot is at `here`. On a robot whose sonars all ping in
     /// every turn, each sonar is read in every third turn, about as often as a sonar pings that fires in turn.
@@ -129,13 +127,14 @@ impl Map {
     /// Marks as free the cells that a ping from this place passed in the direction of `axis`, up to the distance
     /// `free`.
     fn pass(&mut self, from: Pose, axis: Radians, free: f64) {
-        let steps = libm::floor(free / CELL).max(0.0) as i32;
+        let end = libm::floor(free / CELL).max(0.0) as i32 + 1;
+        // A ping passes many cells. Their indices are limited only once, at the transducer: all cells are near it.
+        let [x, y] = [from.x, from.y].map(|metres| metres.0.clamp(-FURTHEST * CELL / 2.0, FURTHEST * CELL / 2.0));
         for (degrees, begin) in RAYS {
             let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
-            let begin = libm::floor(begin / CELL) as i32;
-            let cells = (begin..=steps).map(|step| {
+            let cells = (libm::floor(begin / CELL) as i32..end).map(|step| {
                 let along = f64::from(step) * CELL;
-                Cell::of(from.x.0 + along * cos, from.y.0 + along * sin)
+                Cell { x: below((x + along * cos) / CELL), y: below((y + along * sin) / CELL) }
             });
             self.once(cells, |evidence| evidence.saturating_sub(MISS));
         }
@@ -197,15 +196,27 @@ impl Map {
         if (dx, dy) == (0, 0) {
             return;
         }
-        for across in 0..CELLS {
-            for step in 0..dx.abs().min(CELLS) {
-                let x = if dx > 0 { corner.x + CELLS - 1 - step } else { corner.x + step };
-                self.change(Cell { x, y: corner.y + across }, |_| UNKNOWN);
-            }
-            for step in 0..dy.abs().min(CELLS) {
-                let y = if dy > 0 { corner.y + CELLS - 1 - step } else { corner.y + step };
-                self.change(Cell { x: corner.x + across, y }, |_| UNKNOWN);
-            }
+        for step in 0..dx.abs().min(CELLS) {
+            self.forget_column(if dx > 0 { corner.x + CELLS - 1 - step } else { corner.x + step });
+        }
+        for step in 0..dy.abs().min(CELLS) {
+            self.forget_row(if dy > 0 { corner.y + CELLS - 1 - step } else { corner.y + step });
+        }
+    }
+
+    /// Resets the cells with this index along the first axis to unknown.
+    fn forget_column(&mut self, x: i32) {
+        let (_, column, shift) = place(Cell { x, y: 0 });
+        for byte in self.evidence.iter_mut().filter_map(|row| row.get_mut(column)) {
+            *byte = *byte & !(15 << shift) | UNKNOWN << shift;
+        }
+    }
+
+    /// Resets the cells with this index along the second axis to unknown.
+    fn forget_row(&mut self, y: i32) {
+        let (row, ..) = place(Cell { x: 0, y });
+        if let Some(row) = self.evidence.get_mut(row) {
+            *row = UNKNOWN_ROW;
         }
     }
 

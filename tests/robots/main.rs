@@ -9,6 +9,7 @@ mod contacts;
 mod crowds;
 mod driven;
 mod emulators;
+mod evidence;
 mod formation;
 mod hanging;
 mod lab_tour;

@@ -17,7 +17,11 @@ const RAMP: f64 = 1.0;
 /// Time between two rows, in seconds.
 const ROW: f64 = 0.1;
 /// Distance along the line, in metres, from a place to each of the two places that determine its heading.
-const AHEAD: f64 = 0.05;
+///
+/// A way by `Follow` begins with a bend towards the leader, and so the way back ends with this bend. A robot that obeys
+/// a turn late turns beyond the end of a sharp bend, and drives off in that direction. The next way then begins with a
+/// sharper bend: with 5 cm, the angle between the last heading and the way doubles with each lap of three Scouts.
+const AHEAD: f64 = 0.2;
 /// Length, in metres, below which a path is too short to be recorded.
 const SHORTEST: f64 = 0.2;
 
@@ -168,6 +172,21 @@ mod tests {
             assert!(off < 0.03, "{off} m off with {frame}");
             assert!((9.5..10.0).contains(&seconds), "4.75 m at 0.5 m/s, and the ramp: {seconds} s");
         }
+    }
+
+    #[test]
+    fn a_bend_at_the_end_of_the_way_back_is_smoothed() {
+        // The way begins with 10 cm at 40° to the rest of it.
+        let (sin, cos) = libm::sincos(Radians::from_degrees(40.0).0);
+        let bend = (0..10).map(|number| 0.01 * f64::from(number)).map(|s| [s * cos, s * sin]);
+        let rest = (0..200).map(|number| 0.01 * f64::from(number)).map(|s| [0.1 * cos + s, 0.1 * sin]);
+        let text = way(bend.chain(rest)).back(Radians::from_degrees(180.0)).unwrap();
+        let headings: Vec<f64> =
+            text.lines().skip(1).map(|row| row.split(", ").nth(1).unwrap().parse().unwrap()).collect();
+        let last = *headings.last().unwrap();
+        assert!((5.0..25.0).contains(&last), "{last}");
+        let steepest = headings.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+        assert!(steepest < 8.0, "{steepest}° in a tenth of a second: {headings:?}");
     }
 
     #[test]

@@ -63,15 +63,45 @@ mod machine {
     const ROTATE_90: robot::Rotate = robot::Rotate::new(
         runtime::Radians::from_degrees(90.0),
     );
-    /// `advance 0.4 20`
-    const ADVANCE_0_4_20: robot::Advance = robot::Advance::new(
-        runtime::Meters(0.4),
-        runtime::MetersPerSecond(0.2),
+    /// `y > 1.2`
+    const Y_1_2: runtime::Comparison<robot::Y, runtime::NoSignal> = runtime::Comparison::new(
+        robot::Y::new(),
+        runtime::Operator::Greater,
+        runtime::Operand::<runtime::NoSignal>::Value(1.2),
     );
-    /// `advance -0.8 20`
-    const ADVANCE_MINUS_0_8_20: robot::Advance = robot::Advance::new(
-        runtime::Meters(-0.8),
+    /// `r0 < 0.4`
+    const R0_0_4: runtime::Comparison<robot::R, runtime::NoSignal> = runtime::Comparison::new(
+        robot::R::new(runtime::SonarId::new(0)),
+        runtime::Operator::Less,
+        runtime::Operand::<runtime::NoSignal>::Value(0.4),
+    );
+    /// `go 20 0`
+    const GO_20_0: robot::Go = robot::Go::new(
         runtime::MetersPerSecond(0.2),
+        runtime::RadiansPerSecond(0.0),
+    );
+    /// `y < -1.2`
+    const Y_MINUS_1_2: runtime::Comparison<robot::Y, runtime::NoSignal> = runtime::Comparison::new(
+        robot::Y::new(),
+        runtime::Operator::Less,
+        runtime::Operand::<runtime::NoSignal>::Value(-1.2),
+    );
+    /// `r8 < 0.4`
+    const R8_0_4: runtime::Comparison<robot::R, runtime::NoSignal> = runtime::Comparison::new(
+        robot::R::new(runtime::SonarId::new(8)),
+        runtime::Operator::Less,
+        runtime::Operand::<runtime::NoSignal>::Value(0.4),
+    );
+    /// `go -20 0`
+    const GO_MINUS_20_0: robot::Go = robot::Go::new(
+        runtime::MetersPerSecond(-0.2),
+        runtime::RadiansPerSecond(0.0),
+    );
+    /// `y > 0`
+    const Y_0: runtime::Comparison<robot::Y, runtime::NoSignal> = runtime::Comparison::new(
+        robot::Y::new(),
+        runtime::Operator::Greater,
+        runtime::Operand::<runtime::NoSignal>::Value(0.0),
     );
     /// `rotate 0`
     const ROTATE_0: robot::Rotate = robot::Rotate::new(
@@ -92,16 +122,16 @@ mod machine {
         Atom4(<robot::Advance as runtime::Control<Output>>::Law),
         /// `(Atom (wait 10) rotate 90)`
         Atom5(<robot::Rotate as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 10) advance 0.4 20)`
-        Atom6(<robot::Advance as runtime::Control<Output>>::Law),
+        /// `(Atom (y > 1.2 OR r0 < 0.4 OR wait 15) go 20 0)`
+        Atom6(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait 40) turn 360)`
         Atom7(<robot::Turn as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 15) advance -0.8 20)`
-        Atom8(<robot::Advance as runtime::Control<Output>>::Law),
+        /// `(Atom (y < -1.2 OR r8 < 0.4 OR wait 25) go -20 0)`
+        Atom8(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait 40) turn -360)`
         Atom9(<robot::Turn as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 10) advance 0.4 20)`
-        Atom10(<robot::Advance as runtime::Control<Output>>::Law),
+        /// `(Atom (y > 0 OR wait 15) go 20 0)`
+        Atom10(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait 10) rotate 0)`
         Atom11(<robot::Rotate as runtime::Control<Output>>::Law),
     }
@@ -131,15 +161,11 @@ mod machine {
                 4 => {
                     *self = Running::Atom5(runtime::Control::begin(&ROTATE_90, y, begin));
                 }
-                5 => {
-                    *self = Running::Atom6(
-                        runtime::Control::begin(&ADVANCE_0_4_20, y, begin),
-                    );
-                }
+                5 => *self = Running::Atom6(runtime::Control::begin(&GO_20_0, y, begin)),
                 6 => *self = Running::Atom7(runtime::Control::begin(&TURN_360, y, begin)),
                 7 => {
                     *self = Running::Atom8(
-                        runtime::Control::begin(&ADVANCE_MINUS_0_8_20, y, begin),
+                        runtime::Control::begin(&GO_MINUS_20_0, y, begin),
                     );
                 }
                 8 => {
@@ -147,11 +173,7 @@ mod machine {
                         runtime::Control::begin(&TURN_MINUS_360, y, begin),
                     );
                 }
-                9 => {
-                    *self = Running::Atom10(
-                        runtime::Control::begin(&ADVANCE_0_4_20, y, begin),
-                    );
-                }
+                9 => *self = Running::Atom10(runtime::Control::begin(&GO_20_0, y, begin)),
                 10 => {
                     *self = Running::Atom11(runtime::Control::begin(&ROTATE_0, y, begin));
                 }
@@ -258,16 +280,13 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom6(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                Running::Atom6(_) => {
+                    if runtime::Interrupt::fired(&Y_1_2, y)
+                        | runtime::Interrupt::fired(&R0_0_4, y)
+                        | (cursor.since(2u16, t) >= Nanos(15000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(6, 2, 3)),
-                        );
-                    }
-                    if runtime::Completes::completed(law, y, t) {
-                        return Some(
-                            runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(6, 2, 3)),
                         );
                     }
@@ -286,16 +305,13 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom8(law) => {
-                    if cursor.since(2u16, t) >= Nanos(15000000000) {
+                Running::Atom8(_) => {
+                    if runtime::Interrupt::fired(&Y_MINUS_1_2, y)
+                        | runtime::Interrupt::fired(&R8_0_4, y)
+                        | (cursor.since(2u16, t) >= Nanos(25000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(8, 2, 3)),
-                        );
-                    }
-                    if runtime::Completes::completed(law, y, t) {
-                        return Some(
-                            runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(8, 2, 3)),
                         );
                     }
@@ -314,16 +330,12 @@ mod machine {
                         );
                     }
                 }
-                Running::Atom10(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                Running::Atom10(_) => {
+                    if runtime::Interrupt::fired(&Y_0, y)
+                        | (cursor.since(2u16, t) >= Nanos(15000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(10, 2, 3)),
-                        );
-                    }
-                    if runtime::Completes::completed(law, y, t) {
-                        return Some(
-                            runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(10, 2, 3)),
                         );
                     }
@@ -409,16 +421,64 @@ mod machine {
             runtime::Condition::Wait(Nanos(20000000000)),
             runtime::Condition::Null,
             runtime::Condition::Wait(Nanos(10000000000)),
-            runtime::Condition::Wait(Nanos(10000000000)),
+            runtime::Condition::Or(2, 3),
             runtime::Condition::Wait(Nanos(40000000000)),
-            runtime::Condition::Wait(Nanos(15000000000)),
+            runtime::Condition::Or(5, 3),
             runtime::Condition::Wait(Nanos(40000000000)),
-            runtime::Condition::Wait(Nanos(10000000000)),
+            runtime::Condition::Or(8, 2),
             runtime::Condition::Wait(Nanos(10000000000)),
         ],
         operands: &[
             runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
             runtime::Condition::Wait(Nanos(300000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::Y(robot::Y::new()),
+                        runtime::Operator::Greater,
+                        runtime::Operand::<robot::AnySignal>::Value(1.2),
+                    ),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::R(robot::R::new(runtime::SonarId::new(0))),
+                        runtime::Operator::Less,
+                        runtime::Operand::<robot::AnySignal>::Value(0.4),
+                    ),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(15000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::Y(robot::Y::new()),
+                        runtime::Operator::Less,
+                        runtime::Operand::<robot::AnySignal>::Value(-1.2),
+                    ),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::R(robot::R::new(runtime::SonarId::new(8))),
+                        runtime::Operator::Less,
+                        runtime::Operand::<robot::AnySignal>::Value(0.4),
+                    ),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(25000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::Y(robot::Y::new()),
+                        runtime::Operator::Greater,
+                        runtime::Operand::<robot::AnySignal>::Value(0.0),
+                    ),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(15000000000)),
         ],
     };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
@@ -457,18 +517,18 @@ mod machine {
     const LAWS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
             "turn 360", "advance 1.4 20", "turn -360", "advance -1.4 20", "rotate 90",
-            "advance 0.4 20", "turn 360", "advance -0.8 20", "turn -360",
-            "advance 0.4 20", "rotate 0"
+            "go 20 0", "turn 360", "go -20 0", "turn -360", "go 20 0", "rotate 0"
         ],
-        &[8, 22, 31, 46, 55, 69, 77, 92, 101, 115, 123],
+        &[8, 22, 31, 46, 55, 62, 70, 78, 87, 94, 102],
     );
     /// The condition text of each bracket; empty for a loop.
     const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
             "bumper OR wait 300", "wait 40", "wait 20", "wait 40", "wait 20", "null",
-            "wait 10", "wait 10", "wait 40", "wait 15", "wait 40", "wait 10", "wait 10"
+            "wait 10", "y > 1.2 OR r0 < 0.4 OR wait 15", "wait 40",
+            "y < -1.2 OR r8 < 0.4 OR wait 25", "wait 40", "y > 0 OR wait 15", "wait 10"
         ],
-        &[18, 25, 32, 39, 46, 50, 57, 64, 71, 78, 85, 92, 99],
+        &[18, 25, 32, 39, 46, 50, 57, 87, 94, 125, 132, 148, 155],
     );
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: runtime::TextList<'static> = runtime::TextList::new(
@@ -514,33 +574,31 @@ mod machine {
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["map.mdle"],
         brackets: &[
-            [0, 4, 0, 2],
-            [0, 5, 2, 1],
-            [0, 6, 3, 1],
-            [0, 7, 4, 1],
-            [0, 8, 5, 1],
-            [0, 9, 6, 1],
-            [0, 10, 7, 1],
-            [0, 11, 8, 1],
-            [0, 12, 9, 1],
-            [0, 13, 10, 1],
-            [0, 14, 11, 1],
-            [0, 15, 12, 1],
-            [0, 16, 13, 1],
+            [0, 7, 0, 2],
+            [0, 8, 2, 1],
+            [0, 9, 3, 1],
+            [0, 10, 4, 1],
+            [0, 11, 5, 1],
+            [0, 12, 6, 1],
+            [0, 13, 7, 1],
+            [0, 14, 8, 3],
+            [0, 15, 11, 1],
+            [0, 16, 12, 3],
+            [0, 17, 15, 1],
+            [0, 18, 16, 2],
+            [0, 19, 18, 1],
         ],
         conditions: runtime::TextList::new(
             concat![
                 "bumper OR wait 5min", "wait 40", "wait 20", "wait 40", "wait 20",
-                "null", "wait 10", "wait 10", "wait 40", "wait 15", "wait 40", "wait 10",
+                "null", "wait 10", "y > 1.2m OR r0 < 40cm OR wait 15", "wait 40",
+                "y < -1.2m OR r8 < 40cm OR wait 25", "wait 40", "y > 0m OR wait 15",
                 "wait 10"
             ],
-            &[19, 26, 33, 40, 47, 51, 58, 65, 72, 79, 86, 93, 100],
+            &[19, 26, 33, 40, 47, 51, 58, 90, 97, 130, 137, 154, 161],
         ),
         operands: &[
-            [0, 4, 0, 0],
-            [0, 4, 0, 0],
-            [0, 5, 0, 0],
-            [0, 6, 0, 0],
+            [0, 7, 0, 0],
             [0, 7, 0, 0],
             [0, 8, 0, 0],
             [0, 9, 0, 0],
@@ -548,26 +606,67 @@ mod machine {
             [0, 11, 0, 0],
             [0, 12, 0, 0],
             [0, 13, 0, 0],
-            [0, 14, 0, 0],
-            [0, 15, 0, 0],
-            [0, 16, 0, 0],
+            [0, 14, 0, 1],
+            [0, 14, 1, 1],
+            [0, 14, 2, 0],
+            [0, 15, 2, 0],
+            [0, 16, 2, 1],
+            [0, 16, 3, 1],
+            [0, 16, 4, 0],
+            [0, 17, 4, 0],
+            [0, 18, 4, 1],
+            [0, 18, 5, 0],
+            [0, 19, 5, 0],
         ],
         texts: runtime::TextList::new(
             concat![
                 "bumper", "wait 300", "wait 40", "wait 20", "wait 40", "wait 20", "null",
-                "wait 10", "wait 10", "wait 40", "wait 15", "wait 40", "wait 10",
-                "wait 10"
+                "wait 10", "y > 1.2", "r0 < 0.4", "wait 15", "wait 40", "y < -1.2",
+                "r8 < 0.4", "wait 25", "wait 40", "y > 0", "wait 15", "wait 10"
             ],
-            &[6, 14, 21, 28, 35, 42, 46, 53, 60, 67, 74, 81, 88, 95],
+            &[
+                6, 14, 21, 28, 35, 42, 46, 53, 60, 68, 75, 82, 90, 98, 105, 112, 117,
+                124, 131,
+            ],
         ),
         written: runtime::TextList::new(
             concat![
                 "bumper", "wait 5min", "wait 40", "wait 20", "wait 40", "wait 20",
-                "null", "wait 10", "wait 10", "wait 40", "wait 15", "wait 40", "wait 10",
+                "null", "wait 10", "y > 1.2m", "r0 < 40cm", "wait 15", "wait 40",
+                "y < -1.2m", "r8 < 40cm", "wait 25", "wait 40", "y > 0m", "wait 15",
                 "wait 10"
             ],
-            &[6, 15, 22, 29, 36, 43, 47, 54, 61, 68, 75, 82, 89, 96],
+            &[
+                6, 15, 22, 29, 36, 43, 47, 54, 62, 71, 78, 85, 94, 103, 110, 117, 123,
+                130, 137,
+            ],
         ),
-        values: &[],
+        values: &[
+            runtime::ValueWords {
+                after: 1,
+                unit: "m",
+                scale: 1.0,
+            },
+            runtime::ValueWords {
+                after: 2,
+                unit: "m",
+                scale: 1.0,
+            },
+            runtime::ValueWords {
+                after: 1,
+                unit: "m",
+                scale: 1.0,
+            },
+            runtime::ValueWords {
+                after: 2,
+                unit: "m",
+                scale: 1.0,
+            },
+            runtime::ValueWords {
+                after: 1,
+                unit: "m",
+                scale: 1.0,
+            },
+        ],
     };
 }

@@ -4,12 +4,10 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use mdle_compiler::load::LoadedPlan;
 use mdle_host::{RobotRecord, RobotTurn, Target as _};
 use mdle_record::Begin;
-use mdle_runtime::{Nanos, Plan as _, Sensed};
+use mdle_runtime::{Nanos, Plan, Sensed};
 use mdle_sim::Sim;
-use mdle_sim::alphabet::Alphabet as SimAlphabet;
 
 use super::setup::{Member, Scenario};
 
@@ -116,7 +114,7 @@ fn of_member(member: &Member, scenario: &Scenario, command: &str) -> Begin {
 }
 
 /// Returns the first entry of a robot's record. `command` is the command that repeats the run.
-pub(super) fn begin(plan: &LoadedPlan<SimAlphabet>, files: &[(String, String)], command: &str, period: Nanos) -> Begin {
+pub(super) fn begin(plan: &impl Plan, files: &[(String, String)], command: &str, period: Nanos) -> Begin {
     Begin {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         target: Sim::NAME.to_owned(),

@@ -11,7 +11,7 @@ use mdle_compiler::load::{self, Loaded};
 use mdle_engine::link::Faults;
 use mdle_files::{Group, InputError, Spelling, Target};
 use mdle_host::{Quantity, Target as _, setpoints};
-use mdle_runtime::{Nanos, Plan as _, Pose, Setpoint};
+use mdle_runtime::{Alphabet, Nanos, Plan as _, Pose, Setpoint};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Body, Make, RobotEars, Sim, Simulated, Start, StartNoise, Walls, World};
 
@@ -184,16 +184,16 @@ impl Scenario {
 }
 
 /// A plan with the names and the texts of its files, the plan's own file first.
-pub(super) type PlanWithFiles = (Arc<Loaded<SimAlphabet>>, Vec<(String, String)>);
+pub(super) type PlanWithFiles<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 
 /// Compiles and loads the plan of a robot, or the robot's part of a group's plan. `robot` contains the robot and the
-/// names of all robots of the scenario; `None` for a crowd.
-pub(super) fn plan(
+/// names of all robots of the scenario; `None` for a crowd. `A` is bound to the alphabet of the simulated robot.
+pub(super) fn plan<A: Alphabet>(
     file: &At<PathBuf>,
     plan_name: Option<&At<String>>,
     files: &Files,
     robot: Option<(&RobotText, &[&str])>,
-) -> Result<PlanWithFiles, SetupError> {
+) -> Result<PlanWithFiles<A>, SetupError> {
     let (place, file) = (file.span(), files.named(file.get_ref()));
     let target = files.target(&file)?;
     let mut input = files.plan(&file, &target).map_err(|error| placed(place.clone(), error))?;

@@ -253,7 +253,7 @@ impl Footprint {
         };
         let (x, y) = (self.pose.x.0 - from.x, self.pose.y.0 - from.y);
         // A quick check skips most bodies beyond a short ray.
-        if x.abs() > most + radius + BEYOND {
+        if x.abs().max(y.abs()) > most + radius + BEYOND {
             return None;
         }
         let (along, across) = (x * way.x + y * way.y, x * way.y - y * way.x);

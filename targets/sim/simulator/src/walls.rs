@@ -246,14 +246,12 @@ impl Walls {
         let (along, edge) = (libm::sincos(axis.0), libm::sincos(half_cone.0));
         let is_near = |other: &&Footprint| {
             let (x, y) = (other.pose.x.0 - from.x, other.pose.y.0 - from.y);
-            let (ahead, aside) = (x * along.1 + y * along.0, (x * along.0 - y * along.1).abs());
+            let (ahead, reach) = (x * along.1 + y * along.0, other.form.radius() + BESIDE);
             // The cone is on the near side of two lines: one across its tip, and one along its edge.
-            let (behind, beside) = (-ahead, aside * edge.1 - ahead * edge.0);
-            behind.max(beside) <= other.form.radius() + BESIDE
+            -ahead <= reach && (x * along.0 - y * along.1).abs() * edge.1 - ahead * edge.0 <= reach
         };
-        let mut others = Vec::with_capacity(self.others.heard.len());
-        others.extend(self.others.heard.iter().filter(is_near));
-        others
+        // A cone contains few of the robots, so the list is short.
+        self.others.heard.iter().filter(is_near).copied().collect()
     }
 
     /// Sets the positions of the other robots.

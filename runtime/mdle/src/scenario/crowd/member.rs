@@ -4,16 +4,17 @@ use std::sync::Arc;
 
 use mdle_compiler::load::{Loaded, LoadedPlan};
 use mdle_runtime::{Machine, Nanos, Pose, Robot as _, Turn, Twist};
-use mdle_sim::alphabet::Alphabet as SimAlphabet;
-use mdle_sim::{Footprint, Others, Simulated};
+use mdle_sim::{Footprint, Others, Simulated, World};
 
+use super::alphabet::CrowdAlphabet;
 use super::recorded::RecordedMember;
 
 /// A robot of a crowd.
 pub(super) struct Member {
-    robot: Simulated,
+    /// On the heap, so that the robots of a large crowd need not be moved from list to list.
+    robot: Box<Simulated>,
     /// The running plan; `None` before it begins.
-    machine: Option<Box<Machine<LoadedPlan<SimAlphabet>>>>,
+    machine: Option<Box<Machine<LoadedPlan<CrowdAlphabet>>>>,
     input: Twist,
     /// `true` once the plan is over.
     pub(super) is_over: bool,
@@ -25,9 +26,27 @@ pub(super) struct Member {
 }
 
 impl Member {
-    pub(super) fn new(robot: Simulated, record: Option<RecordedMember>) -> Self {
-        let record = record.map(Box::new);
-        Self { robot, machine: None, input: Twist::default(), is_over: false, has_touched: false, way: 0.0, record }
+    /// Returns a robot whose plan has not begun.
+    pub(super) fn new(robot: Simulated) -> Self {
+        let (robot, input) = (Box::new(robot), Twist::default());
+        Self { robot, machine: None, input, is_over: false, has_touched: false, way: 0.0, record: None }
+    }
+
+    /// Returns another robot of this kind at the pose `start`; `None` if it cannot start there. `world` is the world of
+    /// this robot.
+    pub(super) fn another(&self, world: &World, start: Pose, seed: Option<u64>) -> Option<Self> {
+        self.robot.another(world, start, seed).ok().map(Self::new)
+    }
+
+    /// Returns the robot with a record, if there is one.
+    pub(super) fn recorded(self, record: Option<RecordedMember>) -> Self {
+        Self { record: record.map(Box::new), ..self }
+    }
+
+    /// Returns the distances between the centres of two such robots, in metres, within which one may detect the other
+    /// with its sonars, and within which they may touch in a turn.
+    pub(super) fn reaches(&self) -> (f64, f64) {
+        (self.robot.hears(), self.robot.touches())
     }
 
     /// Returns the message about an error of the record, if any.
@@ -59,7 +78,7 @@ impl Member {
     }
 
     /// Makes the turn of the plan at time `t`, with the robots in `others` nearby.
-    pub(super) fn turn(&mut self, t: Nanos, plan: &Arc<Loaded<SimAlphabet>>, others: &mut Others) {
+    pub(super) fn turn(&mut self, t: Nanos, plan: &Arc<Loaded<CrowdAlphabet>>, others: &mut Others) {
         self.robot.swap_others(others);
         let y = self.robot.senses();
         self.robot.swap_others(others);
@@ -123,7 +142,7 @@ mod tests {
         let make = Make { body: Body::Ideal, without: Vec::new(), seed: None };
         let robot = Simulated::with(&make, &world, start, Duration::from_millis(100)).unwrap();
         let log = env::temp_dir().join(format!("mdle-crowd-{}.mcap", process::id()));
-        let mut member = Member::new(robot, RecordedMember::create(&log, 1, Begin::default()).ok());
+        let mut member = Member::new(robot).recorded(RecordedMember::create(&log, 1, Begin::default()).ok());
         member.input.v = MetersPerSecond(f64::NAN);
         member.moves(Nanos(100_000_000), &mut Others::default());
         member.stop(Nanos(200_000_000));

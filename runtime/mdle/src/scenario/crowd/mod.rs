@@ -1,5 +1,6 @@
 //! A crowd: many robots in one world that run the same plan, each with its own state (docs/src/many_robots.md).
 
+mod alphabet;
 mod member;
 mod places;
 mod recorded;

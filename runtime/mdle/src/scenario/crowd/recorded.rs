@@ -6,9 +6,9 @@ use mdle_compiler::load::LoadedPlan;
 use mdle_host::{RobotRecord, RobotTurn, Transitions};
 use mdle_record::Begin;
 use mdle_runtime::{Machine, Nanos, Sensed, Turn, Twist};
-use mdle_sim::alphabet::Alphabet as SimAlphabet;
 
 use super::super::records::{remove, unwritten};
+use super::alphabet::CrowdAlphabet;
 
 /// A record that is being written.
 pub(super) struct RecordedMember {
@@ -37,7 +37,7 @@ impl RecordedMember {
     /// Writes a turn that `machine` has made at time `t` with the output `y`.
     pub(super) fn turn(
         &mut self,
-        machine: &Machine<LoadedPlan<SimAlphabet>>,
+        machine: &Machine<LoadedPlan<CrowdAlphabet>>,
         (y, t): (&Sensed, Nanos),
         turn: &Turn<Twist>,
     ) {

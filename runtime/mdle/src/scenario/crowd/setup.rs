@@ -7,7 +7,6 @@ use std::time::Duration;
 use mdle_compiler::load::Loaded;
 use mdle_host::{Quantity, Target as _};
 use mdle_runtime::{Nanos, Plan as _};
-use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Make, Sim, Simulated};
 
 use super::super::arguments::ScenarioOptions;
@@ -15,6 +14,8 @@ use super::super::file::{At, CrowdText, ScenarioError, ScenarioText, duration};
 use super::super::files::Files;
 use super::super::records::begin;
 use super::super::setup::{self, SetupError};
+use super::alphabet::CrowdAlphabet;
+use super::member::Member;
 use super::places::{Places, hall};
 use super::recorded::RecordedMember;
 
@@ -27,8 +28,8 @@ const SPACING: f64 = 2.0;
 
 /// A crowd.
 pub(in super::super) struct CrowdSetup {
-    pub(super) robots: Vec<Simulated>,
-    pub(super) plan: Arc<Loaded<SimAlphabet>>,
+    pub(super) robots: Vec<Member>,
+    pub(super) plan: Arc<Loaded<CrowdAlphabet>>,
     /// Names and texts of the plan's files, the plan's own file first.
     files: Vec<(String, String)>,
     pub(super) period: Nanos,
@@ -105,7 +106,7 @@ fn nanos(time: Duration) -> Nanos {
 }
 
 /// Checks that a plan needs nothing that the robots of a crowd lack.
-fn check(plan: &Arc<Loaded<SimAlphabet>>, crowd: &CrowdText) -> Result<(), ScenarioError> {
+fn check(plan: &Arc<Loaded<CrowdAlphabet>>, crowd: &CrowdText) -> Result<(), ScenarioError> {
     let plan = plan.plan();
     let refused = |message: String| Err(ScenarioError::at(crowd.file.span(), message));
     if let Some(robot) = plan.robots().first() {
@@ -127,7 +128,7 @@ fn robots(
     from: &Files,
     seed: Option<u64>,
     period: Duration,
-) -> Result<Vec<Simulated>, SetupError> {
+) -> Result<Vec<Member>, SetupError> {
     let body = setup::body(crowd.body.as_ref())?;
     let count = *crowd.robots.get_ref();
     let spacing = crowd.spacing.as_ref().map(spacing).transpose()?.unwrap_or(SPACING);
@@ -145,10 +146,10 @@ fn robots(
     let mut places = Places::of(&world, spacing, seed.unwrap_or_default());
     let first = places.find_map(|start| Simulated::with(&make, &world, start, period).ok());
     let Some(first) = first else { return Err(no_room(crowd, 0, spacing).into()) };
-    let mut robots = vec![first];
+    let mut robots = vec![Member::new(first)];
     while (robots.len() as u64) < count {
         let (number, first) = (robots.len() as u64, robots.first());
-        let next = first.and_then(|first| places.find_map(|start| first.another(&world, start, seeded(number)).ok()));
+        let next = first.and_then(|first| places.find_map(|start| first.another(&world, start, seeded(number))));
         let Some(robot) = next else { return Err(no_room(crowd, number, spacing).into()) };
         robots.push(robot);
     }

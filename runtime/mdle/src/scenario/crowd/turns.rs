@@ -12,9 +12,9 @@ use std::thread;
 
 use mdle_compiler::load::Loaded;
 use mdle_runtime::{Nanos, Pose};
-use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Crowd, Footprint, Groups, Others};
 
+use super::alphabet::CrowdAlphabet;
 use super::member::Member;
 use super::recorded::RecordedMember;
 use super::setup::CrowdSetup;
@@ -28,8 +28,9 @@ const FOR_A_THREAD: usize = 100;
 pub(super) struct Turns {
     /// The robots. Only one thread locks each robot in a turn, so no thread waits.
     members: Vec<Mutex<Member>>,
-    plan: Arc<Loaded<SimAlphabet>>,
+    plan: Arc<Loaded<CrowdAlphabet>>,
     threads: usize,
+    is_recorded: bool,
     /// Distance between the centres of two robots, in metres, within which one may detect the other with its sonars.
     hears: f64,
     /// Distance between the centres of two robots that may touch in a turn, in metres.
@@ -55,12 +56,13 @@ impl Turns {
     /// recorded.
     pub(super) fn new(setup: CrowdSetup, records: Vec<RecordedMember>) -> Self {
         let CrowdSetup { robots, plan, threads, .. } = setup;
+        let is_recorded = !records.is_empty();
         let mut records = records.into_iter();
-        let (hears, touches) = robots.first().map_or((0.0, 0.0), |robot| (robot.hears(), robot.touches()));
-        let members = robots.into_iter().map(|robot| Mutex::new(Member::new(robot, records.next())));
+        let (hears, touches) = robots.first().map_or((0.0, 0.0), Member::reaches);
+        let members = robots.into_iter().map(|robot| Mutex::new(robot.recorded(records.next())));
         let members: Vec<_> = members.collect();
         let threads = threads.min(members.len().div_ceil(FOR_A_THREAD));
-        Self { members, plan, threads, hears, touches }
+        Self { members, plan, threads, is_recorded, hears, touches }
     }
 
     /// Returns the number of threads that make the turns.
@@ -106,6 +108,9 @@ impl Turns {
 
     /// Returns the message about a record that could not be written, if any.
     pub(super) fn fault(&self) -> Option<String> {
+        if !self.is_recorded {
+            return None;
+        }
         self.each().find_map(|member| member.fault().map(str::to_owned))
     }
 
