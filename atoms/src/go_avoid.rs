@@ -233,18 +233,19 @@ struct Chosen {
 }
 
 impl GoingRound {
-    /// Chooses a direction from the pings of the sonars; `None` while the robot stands still because a person
-    /// crosses its way.
+    /// Chooses a direction from the pings of the sonars; returns the input instead while the robot keeps out of the way
+    /// of a person who crosses.
     ///
     /// The function is not inlined, so that the obstacles have left the stack before [`Self::squeeze`] puts a
     /// map there.
     #[inline(never)]
-    fn look<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos) -> Option<Chosen> {
+    fn look<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos) -> Result<Chosen, Twist> {
         let mut obstacles = Obstacles::seen(y, here);
         self.passers.take(y, &obstacles, here, (self.direction(here), self.speed), t);
         self.notice(&obstacles, here, t);
         if self.passers.stops(t) {
-            return None;
+            let v = self.passers.waits(&obstacles, here, self.speed);
+            return Err(Twist { v, omega: RadiansPerSecond(0.0) });
         }
         let direction = if self.goes_along(t) {
             let seen = obstacles.remember(&self.memory, here, t);
@@ -255,7 +256,7 @@ impl GoingRound {
             self.choose(&obstacles, here, t)
         };
         let to_goal = self.detour.is_none().then(|| obstacles.free(self.direction(here)));
-        Some(Chosen { direction, ahead: obstacles.free(here.theta), to_goal })
+        Ok(Chosen { direction, ahead: obstacles.free(here.theta), to_goal })
     }
 
     /// Returns the input in or before a narrow place; `None` elsewhere.
@@ -329,7 +330,10 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         self.progress.take(here, &self.goal, t);
         self.memory.take(y);
         self.narrow.take(y, here);
-        let Some(chosen) = self.look(y, here, t) else { return Twist::default() };
+        let chosen = match self.look(y, here, t) {
+            Ok(chosen) => chosen,
+            Err(waits) => return waits,
+        };
         if let Some(twist) = self.squeeze(y, here, t, &chosen) {
             return twist;
         }

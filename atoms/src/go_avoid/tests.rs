@@ -140,3 +140,17 @@ fn the_turn_at_the_beginning_is_no_delay() {
     }
     assert!(law.headed.is_none());
 }
+
+/// A person who comes to within 1 m at 67.5° is 46 cm ahead: the robot would be met where it stands.
+#[test]
+fn the_robot_backs_off_from_a_person_who_crosses() {
+    let mut y = Sensed::default();
+    for (second, range) in (0..).zip([1.8, 1.4, 0.9]) {
+        y.ping_at(mdle_runtime::SonarId::new(3), Some(range), Nanos(second * 1_000_000_000));
+    }
+    let mut law = quark(0.0, 5.0).begin(&y, begun());
+    let mut speed = |y: &Sensed| (0..5).map(|turn| law.input(y, Nanos(turn * 100_000_000)).v.0).fold(0.0, |_, v| v);
+    assert_eq!(speed(&y), -0.2);
+    y.pose.x = Meters(-0.3);
+    assert_eq!(speed(&y), 0.0, "far enough");
+}
