@@ -41,8 +41,8 @@ const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
 /// Minimum duration of a detour to a goal that another goal has replaced. The distance of such a goal need not be
 /// known, so the gain cannot be measured.
 const DETOUR_RENEWED: Nanos = Nanos(4_000_000_000);
-/// Angle, in radians, by which the robot must have turned towards the obstacle of a detour for it to circle: a circle and
-/// a half, as a detour out of a corner turns by up to a circle.
+/// Angle, in radians, by which the robot must have turned towards the obstacle of a detour for it to circle: a circle
+/// and a half, as a detour out of a corner turns by up to a circle.
 const CIRCLES: f64 = 3.0 * core::f64::consts::PI;
 /// Angle from the goal's direction at which the robot gives way to an approaching person.
 const ASIDE: Radians = Radians::from_degrees(60.0);

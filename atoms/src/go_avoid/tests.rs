@@ -141,11 +141,11 @@ fn the_turn_at_the_beginning_is_no_delay() {
     assert!(law.headed.is_none());
 }
 
-/// A person who comes to within 1 m at 67.5° is 46 cm ahead: the robot would be met where it stands.
+/// A person who comes to within 1.4 m at 67.5° is 53 cm ahead: the robot would be touched where it stands.
 #[test]
 fn the_robot_backs_off_from_a_person_who_crosses() {
     let mut y = Sensed::default();
-    for (second, range) in (0..).zip([1.8, 1.4, 0.9]) {
+    for (second, range) in (0..).zip([2.1, 1.7, 1.2]) {
         y.ping_at(mdle_runtime::SonarId::new(3), Some(range), Nanos(second * 1_000_000_000));
     }
     let mut law = quark(0.0, 5.0).begin(&y, begun());
