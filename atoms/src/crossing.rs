@@ -24,6 +24,8 @@ const CLEAR: f64 = 0.2;
 /// Minimum distance, in metres, from the way at which the robot backs off from a person. Echoes of the rough walls of a
 /// hallway that come nearer by chance are nearer than that.
 const FAR: f64 = 1.2;
+/// Maximum time, in seconds, in which a person reaches the way for the robot to back off.
+const BACK: f64 = 5.0;
 /// Minimum distance, in metres, of a crossing person from the way. A person nearer to the way is an obstacle, or walks
 /// along the way.
 const ASIDE: f64 = 0.45;
@@ -103,7 +105,7 @@ fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64
     let is_before = new.along + apart < speed * (seconds - apart / mean);
     let meets = new.along < apart + PERSON + speed * seconds && seconds < SOON && !is_before;
     let is_nearer = mean * (new.at - old.at) >= NEARER;
-    let back = if is_far { (apart + CLEAR - new.along).max(0.0) } else { 0.0 };
+    let back = if is_far && seconds < BACK { (apart + CLEAR - new.along).max(0.0) } else { 0.0 };
     let crossing = Crossing { passed: seconds + apart / mean, back };
     (moves(first) && is_nearer && meets).then_some(crossing)
 }
