@@ -10,16 +10,29 @@ const SPEEDS: [f64; 2] = [0.25, 2.0];
 /// Maximum turn rate of the robot, in rad/s, between compared echoes: as the robot turns, the echo of a wall
 /// moves along the wall.
 const TURNS: f64 = 0.02;
+/// Maximum angle, in radians, by which the robot may turn between compared echoes at any rate. It hardly moves an echo,
+/// and wheels that skid turn the robot to and fro by as much.
+const TURNED: f64 = 0.01;
 /// Minimum decrease, in metres, of the distance of a crossing person between echoes. A smaller decrease may be an error
 /// of the ranges.
 const NEARER: f64 = 0.075;
 /// The radius of a person, in metres.
 const PERSON: f64 = 0.25;
+/// Room, in metres, that the robot leaves between a person and its body. The direction of an echo is uncertain by the
+/// cone of its sonar.
+const CLEAR: f64 = 0.2;
+/// Minimum distance, in metres, from the way at which the robot backs off from a person. Echoes of the rough walls of a
+/// hallway that come nearer by chance are nearer than that.
+const FAR: f64 = 1.2;
+/// Maximum time, in seconds, in which a person reaches the way for the robot to back off.
+const BACK: f64 = 5.0;
 /// Minimum distance, in metres, of a crossing person from the way. A person nearer to the way is an obstacle, or walks
 /// along the way.
 const ASIDE: f64 = 0.45;
-/// Maximum time, in seconds, in which a person reaches the way.
-const SOON: f64 = 5.0;
+/// Maximum time, in seconds, in which a person reaches the way. A sonar that pings once a second has heard a person
+/// for two seconds before its three pings agree, and its direction is uncertain by several degrees: a robot that stops
+/// later may already be where the person walks.
+const SOON: f64 = 8.0;
 
 /// An echo: its time in seconds, and its distance along the way and to the left of it, in metres.
 struct Echo {
@@ -28,22 +41,32 @@ struct Echo {
     across: f64,
 }
 
-/// Returns the time, in seconds, until a person who comes from a side has crossed the way; `None` if no such person
-/// comes. The person would pass ahead of the robot if it stood still, but may meet it if it drove on at `speed`, in
-/// m/s.
-pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> Option<f64> {
-    let ahead = libm::sincos(here.theta.0);
-    (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, (here, ahead), speed)).reduce(f64::max)
+/// A person who is about to cross the way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Crossing {
+    /// Time, in seconds, until the person has crossed the way.
+    pub(crate) passed: f64,
+    /// Distance, in metres, by which the robot has to back off so that the person passes ahead of it; 0 if the person
+    /// does so anyway.
+    pub(crate) back: f64,
 }
 
-/// Returns the time, in seconds, until a person heard in all kept pings of `sonar` has crossed the way; `None` if there
-/// is no such person. The conditions are those of [`crosses`]. `sin` and `cos` belong to the heading of `here`.
+/// Returns the person who comes from a side and may meet the robot if it drives on at `speed`, in m/s; `None` if no
+/// such person comes. Of several persons, the longest time and distance count.
+pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> Option<Crossing> {
+    let ahead = libm::sincos(here.theta.0);
+    let all = (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, (here, ahead), speed));
+    all.reduce(|one, other| Crossing { passed: one.passed.max(other.passed), back: one.back.max(other.back) })
+}
+
+/// Returns the person heard in all kept pings of `sonar`; `None` if there is no such person. The conditions are those
+/// of [`crosses`]. `sin` and `cos` belong to the heading of `here`.
 fn comes<Y: DiffDrive + SonarRing>(
     y: &Y,
     sonar: SonarId,
     (here, (sin, cos)): (Pose, (f64, f64)),
     speed: f64,
-) -> Option<f64> {
+) -> Option<Crossing> {
     const { assert!(PINGS_KEPT == 3) };
     if sonar.bearing().wrapped().0.abs() > core::f64::consts::FRAC_PI_2 {
         return None;
@@ -52,14 +75,14 @@ fn comes<Y: DiffDrive + SonarRing>(
     let [new, middle, old] = [pings.next()??, pings.next()??, pings.next()??];
     let is_straight = |(from, _): (&Ping, Meters), (to, _): (&Ping, Meters)| {
         let turned = Radians(to.pose.theta.0 - from.pose.theta.0).wrapped().0.abs();
-        turned <= TURNS * (to.at.seconds() - from.at.seconds())
+        turned <= (TURNS * (to.at.seconds() - from.at.seconds())).max(TURNED)
     };
     if !(is_straight(old, middle) && is_straight(middle, new)) {
         return None;
     }
     let echo = |(ping, range): (&Ping, Meters)| {
-        let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
-        let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
+        let axis = ping.axis(sonar);
+        let place = axis.towards(axis.theta, Meters(y.ring_radius().0 + range.0));
         let (x, y) = (place.x.0 - here.x.0, place.y.0 - here.y.0);
         Echo { at: ping.at.seconds(), along: x * cos + y * sin, across: y * cos - x * sin }
     };
@@ -69,7 +92,10 @@ fn comes<Y: DiffDrive + SonarRing>(
     let moves = |speed: f64| (SPEEDS[0]..=SPEEDS[1]).contains(&speed);
     // Most echoes come from an obstacle in the way or from a fixed object. Their older places are not computed.
     let new = echo(new);
-    if !(new.along > y.body_radius().0 + PERSON && new.across.abs() > ASIDE) {
+    let apart = y.body_radius().0 + PERSON;
+    let is_far = new.across.abs() > FAR;
+    let is_ahead = new.along > if is_far { CLEAR / 2.0 } else { apart };
+    if !(is_ahead && new.across.abs() > ASIDE) {
         return None;
     }
     let middle = echo(middle);
@@ -81,10 +107,12 @@ fn comes<Y: DiffDrive + SonarRing>(
     let first = approach(&old, &middle);
     let mean = (first + second) / 2.0;
     let seconds = new.across.abs() / mean;
-    let meets = new.along < y.body_radius().0 + 2.0 * PERSON + speed * seconds && seconds < SOON;
+    let is_before = new.along + apart < speed * (seconds - apart / mean);
+    let meets = new.along < apart + PERSON + speed * seconds && seconds < SOON && !is_before;
     let is_nearer = mean * (new.at - old.at) >= NEARER;
-    let passed = seconds + (y.body_radius().0 + PERSON) / mean;
-    (moves(first) && is_nearer && meets).then_some(passed)
+    let back = if is_far && seconds < BACK { (apart + CLEAR - new.along).max(0.0) } else { 0.0 };
+    let crossing = Crossing { passed: seconds + apart / mean, back };
+    (moves(first) && is_nearer && meets).then_some(crossing)
 }
 
 #[cfg(test)]
@@ -96,9 +124,14 @@ mod tests {
     /// Returns the time, in seconds, for which a robot at rest waits for a person whom its sonar 3 hears at these
     /// ranges, one second apart; `None` if it does not wait.
     fn seconds(ranges: [f64; 3]) -> Option<f64> {
+        person(3, ranges).map(|person| person.passed)
+    }
+
+    /// Returns the person whom a robot at rest hears by this sonar at these ranges, one second apart.
+    fn person(sonar: u8, ranges: [f64; 3]) -> Option<Crossing> {
         let mut y = Sensed::default();
         for (second, range) in (0..).zip(ranges) {
-            y.ping_at(SonarId::new(3), Some(range), Nanos(second * 1_000_000_000));
+            y.ping_at(SonarId::new(sonar), Some(range), Nanos(second * 1_000_000_000));
         }
         crosses(&y, y.pose, 0.2)
     }
@@ -125,8 +158,36 @@ mod tests {
     }
 
     #[test]
+    fn a_person_who_needs_seven_seconds_is_waited_for() {
+        assert!(waits([4.7, 4.2, 3.7]));
+    }
+
+    /// Returns `true` if a robot waits that turns to and fro by this angle, in radians, between pings 180 ms apart.
+    fn waits_while_it_turns(angle: f64) -> bool {
+        let mut y = Sensed { confirmation: 2, ..Sensed::default() };
+        for (number, (range, turned)) in (0..).zip([(2.0, 0.0), (1.9, angle), (1.8, 0.0)]) {
+            y.pose.theta = Radians(turned);
+            y.ping_at(SonarId::new(3), Some(range), Nanos(number * 180_000_000));
+        }
+        crosses(&y, y.pose, 0.2).is_some()
+    }
+
+    #[test]
+    fn a_robot_whose_wheels_skid_a_little_waits_too() {
+        assert!(waits_while_it_turns(0.009) && !waits_while_it_turns(0.011));
+    }
+
+    /// A person 1.4 m away at 67.5° is 53 cm ahead, and would touch a robot that stands.
+    #[test]
+    fn the_robot_backs_off_from_where_a_person_would_meet_it() {
+        let back = |ranges| person(3, ranges).map(|person| person.back);
+        assert!(back([2.1, 1.7, 1.2]).is_some_and(|back| (0.1..0.15).contains(&back)));
+        assert_eq!(back([2.8, 2.3, 1.8]), Some(0.0), "77 cm ahead");
+    }
+
+    #[test]
     fn a_person_who_comes_abreast_is_not_waited_for() {
-        // 1 m away at 67.5°, the person is 46 cm ahead and would walk into a robot that stands.
-        assert!(!waits([1.8, 1.4, 0.9]));
+        assert_eq!(person(4, [2.1, 1.7, 1.2]), None);
+        assert_eq!(person(3, [1.8, 1.4, 0.9]), None, "a person as near as the wall of a hallway");
     }
 }

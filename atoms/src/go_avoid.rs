@@ -41,6 +41,9 @@ const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
 /// Minimum duration of a detour to a goal that another goal has replaced. The distance of such a goal need not be
 /// known, so the gain cannot be measured.
 const DETOUR_RENEWED: Nanos = Nanos(4_000_000_000);
+/// Angle, in radians, by which the robot must have turned towards the obstacle of a detour for it to circle: a circle
+/// and a half, as a detour out of a corner turns by up to a circle.
+const CIRCLES: f64 = 3.0 * core::f64::consts::PI;
 /// Angle from the goal's direction at which the robot gives way to an approaching person.
 const ASIDE: Radians = Radians::from_degrees(60.0);
 /// Durations of two phases that alternate while the robot makes no progress. For the duration `SQUEEZES` it follows
@@ -119,6 +122,21 @@ struct Detour {
     /// Distance from the goal when the detour began.
     from: Meters,
     since: Nanos,
+    /// Angle by which the law had turned when the detour began.
+    turned: Radians,
+}
+
+impl Detour {
+    /// Returns `true` if the robot circles, round the obstacle or, where it has lost the obstacle, round nothing: since
+    /// the detour began it has turned by `CIRCLES` towards the side of the obstacle. `turned` is the angle turned since
+    /// the law began.
+    fn circles(&self, turned: Radians) -> bool {
+        let turned = turned.0 - self.turned.0;
+        match self.side {
+            Side::Left => turned < -CIRCLES,
+            Side::Right => turned > CIRCLES,
+        }
+    }
 }
 
 impl GoingRound {
@@ -196,7 +214,7 @@ impl GoingRound {
             } else {
                 distance < detour.from.0 - GAINED.0 && t.since(detour.since) > DETOUR_LEAST
             };
-            has_helped && obstacles.free(goal) >= look_ahead
+            has_helped && obstacles.free(goal) >= look_ahead || detour.circles(self.winding.turned())
         };
         self.detour = self.detour.filter(|detour| !over(*detour));
         if let Some(side) = self.passers.gives_way() {
@@ -215,7 +233,7 @@ impl GoingRound {
         let offset = obstacles.best(&wish);
         if self.detour.is_none() && offset.0.abs() > DETOUR.0 {
             let side = if offset.0 > 0.0 { Side::Left } else { Side::Right };
-            self.detour = Some(Detour { side, from: Meters(distance), since: t });
+            self.detour = Some(Detour { side, from: Meters(distance), since: t, turned: self.winding.turned() });
         }
         let chosen = Radians(towards.0 + offset.0).wrapped();
         self.previous = Some(chosen);
@@ -233,18 +251,19 @@ struct Chosen {
 }
 
 impl GoingRound {
-    /// Chooses a direction from the pings of the sonars; `None` while the robot stands still because a person
-    /// crosses its way.
+    /// Chooses a direction from the pings of the sonars; returns the input instead while the robot keeps out of the way
+    /// of a person who crosses.
     ///
     /// The function is not inlined, so that the obstacles have left the stack before [`Self::squeeze`] puts a
     /// map there.
     #[inline(never)]
-    fn look<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos) -> Option<Chosen> {
+    fn look<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos) -> Result<Chosen, Twist> {
         let mut obstacles = Obstacles::seen(y, here);
         self.passers.take(y, &obstacles, here, (self.direction(here), self.speed), t);
         self.notice(&obstacles, here, t);
         if self.passers.stops(t) {
-            return None;
+            let v = self.passers.waits(&obstacles, here, self.speed);
+            return Err(Twist { v, omega: RadiansPerSecond(0.0) });
         }
         let direction = if self.goes_along(t) {
             let seen = obstacles.remember(&self.memory, here, t);
@@ -255,7 +274,7 @@ impl GoingRound {
             self.choose(&obstacles, here, t)
         };
         let to_goal = self.detour.is_none().then(|| obstacles.free(self.direction(here)));
-        Some(Chosen { direction, ahead: obstacles.free(here.theta), to_goal })
+        Ok(Chosen { direction, ahead: obstacles.free(here.theta), to_goal })
     }
 
     /// Returns the input in or before a narrow place; `None` elsewhere.
@@ -329,7 +348,10 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         self.progress.take(here, &self.goal, t);
         self.memory.take(y);
         self.narrow.take(y, here);
-        let Some(chosen) = self.look(y, here, t) else { return Twist::default() };
+        let chosen = match self.look(y, here, t) {
+            Ok(chosen) => chosen,
+            Err(waits) => return waits,
+        };
         if let Some(twist) = self.squeeze(y, here, t, &chosen) {
             return twist;
         }

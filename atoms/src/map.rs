@@ -269,17 +269,25 @@ impl Map {
     }
 
     /// Returns the centres of the occupied cells at most `within` metres off the robot along both axes, relative to
-    /// the robot at `here`.
+    /// the robot at `here`. The cells come square by square around the robot's own cell, from the innermost square on.
     pub(crate) fn around(&self, here: Pose, within: Meters) -> impl Iterator<Item = (f64, f64)> {
         let middle = Cell::of(here.x.0, here.y.0);
         let reach = libm::ceil(within.0 / CELL) as i32;
-        (-reach..=reach)
-            .flat_map(move |x| (-reach..=reach).map(move |y| Cell { x: middle.x + x, y: middle.y + y }))
-            .filter_map(move |cell| {
-                let (x, y) = cell.centre();
-                self.is_occupied(cell).then_some((x - here.x.0, y - here.y.0))
-            })
+        (0..=reach).flat_map(square).filter_map(move |(x, y)| {
+            let cell = Cell { x: middle.x + x, y: middle.y + y };
+            let (x, y) = cell.centre();
+            self.is_occupied(cell).then_some((x - here.x.0, y - here.y.0))
+        })
     }
+}
+
+/// Returns the offsets of the cells on the edge of a square that extends `half` cells from its middle to each side.
+fn square(half: i32) -> impl Iterator<Item = (i32, i32)> {
+    (-half..=half).flat_map(move |x| {
+        // The first and the last column belong to the edge; of the other columns, only the two ends do.
+        let step = if x.abs() == half { 1 } else { 2 * half };
+        (-half..=half).step_by(step.max(1) as usize).map(move |y| (x, y))
+    })
 }
 
 /// Returns `true` if this is the evidence of an unknown cell.

@@ -1,5 +1,5 @@
 //! Decides how a robot reacts to the people whom it hears on its way: it gives way to a person who approaches, and
-//! stops for a person who crosses the way.
+//! stops, or backs off, for a person who crosses the way.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians};
@@ -22,6 +22,8 @@ const SURE: u32 = 5;
 /// Minimum time, in seconds, for which the robot stands still for a person who is about to cross its way; it stands
 /// until the person should have passed.
 const STANDS: f64 = 2.5;
+/// Minimum free length of the way behind a robot that backs off.
+const BEHIND: Meters = Meters(0.25);
 
 /// The people on the way to a goal, and the robot's reaction to them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +34,8 @@ pub(crate) struct Passers {
     crossed: u32,
     /// Time until which the robot stands still, because a person crosses its way.
     stands_until: Nanos,
+    /// Pose at which the robot last heard this person, and the distance, in metres, by which it backs off from there.
+    back: (Pose, f64),
 }
 
 /// The side to which the robot gives way to an approaching person, and the time until which it does so.
@@ -43,7 +47,13 @@ struct GivesWay {
 
 impl Default for Passers {
     fn default() -> Self {
-        Self { approach: Approach::default(), gives_way: None, crossed: 0, stands_until: Nanos::ZERO }
+        Self {
+            approach: Approach::default(),
+            gives_way: None,
+            crossed: 0,
+            stands_until: Nanos::ZERO,
+            back: (Pose::ORIGIN, 0.0),
+        }
     }
 }
 
@@ -62,10 +72,11 @@ impl Passers {
             (self.crossed, self.stands_until) = (0, Nanos::ZERO);
             return;
         }
-        let passed = crosses(y, here, speed.0);
-        self.crossed = if passed.is_some() { self.crossed.saturating_add(1) } else { 0 };
-        if let Some(seconds) = passed.filter(|_| self.crossed >= SURE) {
-            self.stands_until = self.stands_until.max(after(t, seconds.max(STANDS)));
+        let person = crosses(y, here, speed.0);
+        self.crossed = if person.is_some() { self.crossed.saturating_add(1) } else { 0 };
+        if let Some(person) = person.filter(|_| self.crossed >= SURE) {
+            self.stands_until = self.stands_until.max(after(t, person.passed.max(STANDS)));
+            self.back = (here, person.back);
         }
     }
 
@@ -88,9 +99,18 @@ impl Passers {
         self.gives_way.map(|gives_way| gives_way.side)
     }
 
-    /// Returns `true` if the robot stands still at this time, because a person crosses its way.
+    /// Returns `true` if the robot does not drive on at this time, because a person crosses its way.
     pub(crate) fn stops(&self, t: Nanos) -> bool {
         t < self.stands_until
+    }
+
+    /// Returns the speed at which the robot, at `here`, keeps out of the way of the person for whom it stops: it backs
+    /// off at most at `speed`, or stands still.
+    pub(crate) fn waits(&self, obstacles: &Obstacles, here: Pose, speed: MetersPerSecond) -> MetersPerSecond {
+        let (from, back) = self.back;
+        let behind = obstacles.free(Radians(here.theta.0 + core::f64::consts::PI));
+        let backs_off = here.distance(&from).0 < back && behind >= BEHIND;
+        MetersPerSecond(if backs_off { -speed.0 } else { 0.0 })
     }
 }
 

@@ -10,8 +10,8 @@ use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twi
 use crate::map::Map;
 use crate::winding::Winding;
 
-/// Maximum number of occupied cells that are considered, from the nearest rows on.
-const POINTS: usize = 64;
+/// Maximum number of occupied cells that are considered, from the nearest on.
+const POINTS: usize = 96;
 /// Distance beyond the smallest circle around the body, in metres, within which cells are considered.
 const WITHIN: f64 = 0.18;
 /// Turn rates that are tried, in rad/s.
@@ -193,6 +193,25 @@ mod tests {
         let turns = |y: &Sensed| towards(y, 3.0, &[0.32, -0.32]).map(|twist| twist.omega.0);
         assert_eq!(turns(&sized(0.27, 0.27)), Some(0.7));
         assert!(turns(&sized(0.315, 0.27)).is_none_or(|omega| omega < 0.7));
+    }
+
+    #[test]
+    fn the_nearest_cells_count_where_there_are_many() {
+        let mut map = Map::EMPTY;
+        for step in 0..4 {
+            let x = -0.42 - 0.05 * f64::from(step);
+            map.occupy((x, -0.45), (x, 0.45));
+        }
+        for y in [0.52, 0.47, -0.47, -0.52] {
+            map.occupy((-0.35, y), (0.35, y));
+        }
+        let forward = |map: &Map| {
+            let twist = Surroundings::of(&sized(0.315, 0.27), map, Pose::ORIGIN).towards(&aim(0.0), SPEED, false);
+            twist.is_some_and(|twist| twist.v.0 > 0.0)
+        };
+        assert!(forward(&map));
+        map.occupy((0.34, -0.2), (0.34, 0.2));
+        assert!(!forward(&map), "many cells are further off than the wall ahead");
     }
 
     #[test]

@@ -140,3 +140,35 @@ fn the_turn_at_the_beginning_is_no_delay() {
     }
     assert!(law.headed.is_none());
 }
+
+/// A person who comes to within 1.4 m at 67.5° is 53 cm ahead: the robot would be touched where it stands.
+#[test]
+fn the_robot_backs_off_from_a_person_who_crosses() {
+    let mut y = Sensed::default();
+    for (second, range) in (0..).zip([2.1, 1.7, 1.2]) {
+        y.ping_at(mdle_runtime::SonarId::new(3), Some(range), Nanos(second * 1_000_000_000));
+    }
+    let mut law = quark(0.0, 5.0).begin(&y, begun());
+    let mut speed = |y: &Sensed| (0..5).map(|turn| law.input(y, Nanos(turn * 100_000_000)).v.0).fold(0.0, |_, v| v);
+    assert_eq!(speed(&y), -0.2);
+    y.pose.x = Meters(-0.3);
+    assert_eq!(speed(&y), 0.0, "far enough");
+}
+
+/// A robot that has lost the obstacle of its detour would otherwise circle for ever.
+#[test]
+fn a_detour_ends_after_circles_towards_its_obstacle() {
+    for (side, sign) in [(Side::Left, -1.0), (Side::Right, 1.0)] {
+        let mut y = Sensed::default();
+        let mut law = quark(0.0, 5.0).begin(&y, begun());
+        let turned = law.winding.turned();
+        law.detour = Some(Detour { side, from: Meters(3.0), since: Nanos::ZERO, turned });
+        let mut lasts = [false; 8];
+        for (quarter, lasts) in (0_i32..).zip(&mut lasts) {
+            y.pose.theta = Radians::from_degrees(sign * 90.0 * f64::from(quarter)).wrapped();
+            law.input(&y, Nanos(u64::from(quarter.unsigned_abs())));
+            *lasts = law.detour.is_some();
+        }
+        assert_eq!(lasts, [true, true, true, true, true, true, true, false], "{side:?}");
+    }
+}

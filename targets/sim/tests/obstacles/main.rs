@@ -80,10 +80,11 @@ fn the_first_passages_of_the_maze_are_driven() {
     assert_clean("maze", worlds::maze, Body::Atrv, 90);
 }
 
-/// Before `goAvoid` waited for the walker, 14 of 40 ideal robots and 19 of 40 Scouts collided with the walker.
+/// Before `goAvoid` waited for the walker, 14 of 40 ideal robots and 19 of 40 Scouts collided with the walker. Before
+/// it backed off, 9 of 100 Scouts and 14 of 100 ATRV-minis did.
 #[test]
 fn somebody_who_walks_across_is_waited_for() {
-    assert_clean("hall", worlds::hall, Body::Ideal, 90);
-    assert_clean("hall", worlds::hall, Body::Scout, 90);
-    assert_clean("hall", worlds::hall, Body::Atrv, 60);
+    assert_clean("hall", worlds::hall, Body::Ideal, 95);
+    assert_clean("hall", worlds::hall, Body::Scout, 95);
+    assert_clean("hall", worlds::hall, Body::Atrv, 90);
 }
