@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use mdle_sim::{Place, Walls, World};
+use mdle_sim::{Point, Walls, World};
 use mdle_tests::chance::sized;
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
@@ -30,22 +30,22 @@ type Cell = [usize; 2];
 struct Floor {
     walls: Walls,
     /// Middle of the doorway, and sine and cosine of the direction through it.
-    origin: Place,
+    origin: Point,
     direction: (f64, f64),
     /// Cells on walls, each with a point of the wall.
-    on_walls: Vec<(Cell, Place)>,
+    on_walls: Vec<(Cell, Point)>,
 }
 
 impl Floor {
     fn at([x, y, degrees]: [f64; 3]) -> Self {
         let (world, direction) = (World::office().unwrap(), libm::sincos(degrees.to_radians()));
-        let origin = Place { x: x + BEFORE_DOOR * direction.1, y: y + BEFORE_DOOR * direction.0 };
+        let origin = Point { x: x + BEFORE_DOOR * direction.1, y: y + BEFORE_DOOR * direction.0 };
         let mut floor = Self { walls: Walls::of(&world), origin, direction, on_walls: Vec::new() };
         for (_, from, to) in world.segments() {
             let steps = (libm::hypot(to.x - from.x, to.y - from.y) / CELL).ceil() as u32;
             let parts = (0..=steps).map(|step| f64::from(step) / f64::from(steps));
             let points =
-                parts.map(|part| Place { x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y) });
+                parts.map(|part| Point { x: from.x + part * (to.x - from.x), y: from.y + part * (to.y - from.y) });
             let cells: Vec<_> = points.filter_map(|point| Some((floor.cell(point)?, point))).collect();
             floor.on_walls.extend(cells);
         }
@@ -53,25 +53,25 @@ impl Floor {
     }
 
     /// Returns the cell that contains a point of the floor; `None` outside the map.
-    fn cell(&self, point: Place) -> Option<Cell> {
+    fn cell(&self, point: Point) -> Option<Cell> {
         let ((sin, cos), x, y) = (self.direction, point.x - self.origin.x, point.y - self.origin.y);
         let cells = [x * cos + y * sin, y * cos - x * sin].map(|at| (at / CELL + CELLS as f64 / 2.0).floor());
         cells.iter().all(|cell| (0.0..CELLS as f64).contains(cell)).then(|| cells.map(|cell| cell as usize))
     }
 
     /// Returns the middle of a cell.
-    fn middle(&self, cell: Cell) -> Place {
+    fn middle(&self, cell: Cell) -> Point {
         let [x, y] = cell.map(|cell| (cell as f64 + 0.5 - CELLS as f64 / 2.0) * CELL);
         let (sin, cos) = self.direction;
-        Place { x: self.origin.x + x * cos - y * sin, y: self.origin.y + x * sin + y * cos }
+        Point { x: self.origin.x + x * cos - y * sin, y: self.origin.y + x * sin + y * cos }
     }
 
     /// Returns `true` if nothing stands between the point and one of the robot's places.
-    fn is_seen(&self, point: Place, places: &[Place]) -> bool {
+    fn is_seen(&self, point: Point, places: &[Point]) -> bool {
         places.iter().any(|from| {
             let (x, y) = (point.x - from.x, point.y - from.y);
             let range = libm::hypot(x, y);
-            let way = Place { x: x / range, y: y / range };
+            let way = Point { x: x / range, y: y / range };
             // The point may be on a wall.
             range < SIGHT && self.walls.cast(*from, way, range - CELL / 2.0).is_none()
         })
@@ -103,7 +103,7 @@ fn share(cells: impl Iterator<Item = bool>) -> f64 {
 }
 
 /// Returns the quality of a map, given as grey values row by row from the top, of a drive along these places.
-fn quality(floor: &Floor, greys: &[u8], places: &[Place]) -> Quality {
+fn quality(floor: &Floor, greys: &[u8], places: &[Point]) -> Quality {
     let of_row = |row: usize| &greys[(CELLS - 1 - row) * CELLS..(CELLS - row) * CELLS];
     let probabilities: Vec<f64> = (0..CELLS).flat_map(of_row).map(|grey| 1.0 - f64::from(*grey) / 255.0).collect();
     let occupied: Vec<bool> = probabilities.iter().map(|p| *p > 0.65).collect();
@@ -142,10 +142,10 @@ fn mapped(folder: &Path, start: [f64; 3], body: &str, seed: u64) -> Quality {
     for line in fs::read_to_string(folder.join("drive.csv")).unwrap().lines().skip(1) {
         let [x, y] = [1, 2].map(|column| line.split(',').nth(column).unwrap().parse::<f64>().unwrap());
         // One place for each decimetre is enough.
-        places.insert([x, y].map(|at| (at * 10.0).round() as i64), Place { x, y });
+        places.insert([x, y].map(|at| (at * 10.0).round() as i64), Point { x, y });
     }
     let map = fs::read(folder.join("map.pgm")).unwrap();
-    let places: Vec<Place> = places.into_values().collect();
+    let places: Vec<Point> = places.into_values().collect();
     quality(&Floor::at(start), &map[map.len() - CELLS * CELLS..], &places)
 }
 
