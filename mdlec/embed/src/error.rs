@@ -32,7 +32,7 @@ pub enum EmbedError {
     )]
     LineBreak(PathBuf),
     /// The output file, at this path, is also an input file.
-    #[error("`{0}` is the plan itself and would be lost: rename the plan's file")]
+    #[error("`{0}` is a file that the plan is read from, and would be lost: rename that file")]
     OutputIsInput(PathBuf),
     /// The Rust code cannot be written.
     #[error("`{path}` cannot be written: {error}")]

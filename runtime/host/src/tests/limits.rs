@@ -16,7 +16,7 @@ fn help_lists_all_options_and_opens_no_robot() {
 
     Usage: lab_tour [OPTIONS]
 
-    SharedOptions:
+    Options:
           --period <TIME>      Period of the control loop, in seconds or as in `50ms` [default: 0.1]
           --timeout <TIME>     Maximum duration of the plan, in seconds or as in `5min`; exit status 4 after it [default: none]
           --turns <N>          Maximum number of turns; exit status 4 after them [default: none]
