@@ -41,9 +41,6 @@ const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
 /// Minimum duration of a detour to a goal that another goal has replaced. The distance of such a goal need not be
 /// known, so the gain cannot be measured.
 const DETOUR_RENEWED: Nanos = Nanos(4_000_000_000);
-/// Angle, in radians, by which the robot must have turned towards the obstacle of a detour for it to circle: a circle
-/// and a half, as a detour out of a corner turns by up to a circle.
-const CIRCLES: f64 = 3.0 * core::f64::consts::PI;
 /// Angle from the goal's direction at which the robot gives way to an approaching person.
 const ASIDE: Radians = Radians::from_degrees(60.0);
 /// Durations of two phases that alternate while the robot makes no progress. For the duration `SQUEEZES` it follows
@@ -122,21 +119,6 @@ struct Detour {
     /// Distance from the goal when the detour began.
     from: Meters,
     since: Nanos,
-    /// Angle by which the law had turned when the detour began.
-    turned: Radians,
-}
-
-impl Detour {
-    /// Returns `true` if the robot circles, round the obstacle or, where it has lost the obstacle, round nothing: since
-    /// the detour began it has turned by `CIRCLES` towards the side of the obstacle. `turned` is the angle turned since
-    /// the law began.
-    fn circles(&self, turned: Radians) -> bool {
-        let turned = turned.0 - self.turned.0;
-        match self.side {
-            Side::Left => turned < -CIRCLES,
-            Side::Right => turned > CIRCLES,
-        }
-    }
 }
 
 impl GoingRound {
@@ -214,7 +196,7 @@ impl GoingRound {
             } else {
                 distance < detour.from.0 - GAINED.0 && t.since(detour.since) > DETOUR_LEAST
             };
-            has_helped && obstacles.free(goal) >= look_ahead || detour.circles(self.winding.turned())
+            has_helped && obstacles.free(goal) >= look_ahead
         };
         self.detour = self.detour.filter(|detour| !over(*detour));
         if let Some(side) = self.passers.gives_way() {
@@ -233,7 +215,7 @@ impl GoingRound {
         let offset = obstacles.best(&wish);
         if self.detour.is_none() && offset.0.abs() > DETOUR.0 {
             let side = if offset.0 > 0.0 { Side::Left } else { Side::Right };
-            self.detour = Some(Detour { side, from: Meters(distance), since: t, turned: self.winding.turned() });
+            self.detour = Some(Detour { side, from: Meters(distance), since: t });
         }
         let chosen = Radians(towards.0 + offset.0).wrapped();
         self.previous = Some(chosen);

@@ -154,21 +154,3 @@ fn the_robot_backs_off_from_a_person_who_crosses() {
     y.pose.x = Meters(-0.3);
     assert_eq!(speed(&y), 0.0, "far enough");
 }
-
-/// A robot that has lost the obstacle of its detour would otherwise circle for ever.
-#[test]
-fn a_detour_ends_after_circles_towards_its_obstacle() {
-    for (side, sign) in [(Side::Left, -1.0), (Side::Right, 1.0)] {
-        let mut y = Sensed::default();
-        let mut law = quark(0.0, 5.0).begin(&y, begun());
-        let turned = law.winding.turned();
-        law.detour = Some(Detour { side, from: Meters(3.0), since: Nanos::ZERO, turned });
-        let mut lasts = [false; 8];
-        for (quarter, lasts) in (0_i32..).zip(&mut lasts) {
-            y.pose.theta = Radians::from_degrees(sign * 90.0 * f64::from(quarter)).wrapped();
-            law.input(&y, Nanos(u64::from(quarter.unsigned_abs())));
-            *lasts = law.detour.is_some();
-        }
-        assert_eq!(lasts, [true, true, true, true, true, true, true, false], "{side:?}");
-    }
-}
