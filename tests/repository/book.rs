@@ -252,7 +252,8 @@ fn the_page_on_worlds_names_every_key() {
     let format = fs::read_to_string(root().join("targets/sim/simulator/src/world_file/text.rs")).unwrap();
     let obstacles = format.split("rename = \"").skip(1).filter_map(|rest| rest.split('"').next());
     let obstacles: Vec<_> = obstacles.map(|kind| format!("`[[{kind}]]`")).collect();
-    let fields = format.lines().filter(|line| !line.contains("Vec<Table<") && !line.contains("Vec<Spanned<Table<"));
+    let fields =
+        format.lines().filter(|line| !line.contains("Vec<TomlTable<") && !line.contains("Vec<Spanned<TomlTable<"));
     let keys = fields.filter_map(|line| line.trim().strip_prefix("pub(super) ")?.split_once(": "));
     let keys: Vec<_> = keys.map(|(key, _)| format!("`{key}`")).collect();
     assert!(obstacles.len() == 5 && keys.len() > 20, "{obstacles:?} {keys:?}");

@@ -247,7 +247,7 @@ fn machines_written_from_the_rules_share_no_stepping_with_others() {
             (names_from(&file.text, "crate::fsm"), of_fsm),
             (
                 names_from(&file.text, "super"),
-                &["Applied", "COMPLETED", "Fired", "Machine", "Moment", "Outcome", "Reports"],
+                &["Applied", "COMPLETED", "Fired", "EntryTime", "Machine", "Reports", "TurnResult"],
             ),
         ];
         for (names, allowed) in used {

@@ -85,7 +85,8 @@ pub(super) fn spawn(command: &mut Command, guard: &Guard) -> io::Result<(Child, 
     Ok((child, UnfinishedEntry(entry)))
 }
 
-/// Creates a file. A signal that ends this process removes it, unless the returned [`UnfinishedEntry`] was dropped before.
+/// Creates a file. A signal that ends this process removes it, unless the returned [`UnfinishedEntry`] was dropped
+/// before.
 pub(super) fn create(path: &Path) -> io::Result<(File, UnfinishedEntry)> {
     let mut unfinished = list();
     let file = File::create_new(path)?;

@@ -52,8 +52,8 @@ impl RobotPlan {
     }
 }
 
-/// Replaces the plan of each group by the plans of its robots. Returns a [`RobotPlan`] for each of the new plans, and the
-/// errors in groups.
+/// Replaces the plan of each group by the plans of its robots. Returns a [`RobotPlan`] for each of the new plans, and
+/// the errors in groups.
 pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet) -> (Vec<RobotPlan>, Vec<Diagnostic>) {
     let mut found = robots::misplaced(files);
     if files.plans.iter().all(|plan| plan.group.is_none()) {
