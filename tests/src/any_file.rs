@@ -64,9 +64,11 @@ pub fn machine(bytes: &[u8]) {
     // The call only must not panic.
     let _ = theorem::as_printed(&machine, &answer);
     match &answer {
-        theorem::Answer::String(found) => assert!(!theorem::string(&machine, found).is_empty()),
-        theorem::Answer::None(broken) => assert!(broken.iter().all(|broken| !broken.sentence(&machine).is_empty())),
-        theorem::Answer::Stopped(steps) => assert!(*steps >= STEPS),
+        theorem::TheoremResult::String(found) => assert!(!theorem::string(&machine, found).is_empty()),
+        theorem::TheoremResult::None(broken) => {
+            assert!(broken.iter().all(|broken| !broken.sentence(&machine).is_empty()))
+        }
+        theorem::TheoremResult::Stopped(steps) => assert!(*steps >= STEPS),
     }
     assert!(!theorem::augment(&machine).is_empty());
 }

@@ -3,7 +3,7 @@
 
 use mdle_compiler::diagnostic::Span;
 use mdle_compiler::plan::Plan;
-use mdle_compiler::trace::{Applied, OpenPart, Reports, Step as TreeStep, Tree};
+use mdle_compiler::trace::{Applied, OpenPart, Reports, Step, Tree};
 
 /// Maximum number of state copies. When it is reached, every second copy is dropped.
 const MOST_COPIES: usize = 64;

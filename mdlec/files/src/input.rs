@@ -36,14 +36,14 @@ pub struct Input {
 
 /// A group of robots: the name of its plan, and its robots in order.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Group {
+pub struct RobotGroup {
     /// Name of the group's plan.
     pub name: String,
     /// Names of the robots.
     pub robots: Vec<String>,
 }
 
-impl Group {
+impl RobotGroup {
     /// Returns the name of the plan of `robot`, or `None` if the group has no such robot.
     #[must_use]
     pub fn plan_of(&self, robot: &str) -> Option<String> {
@@ -114,7 +114,7 @@ impl Input {
 
     /// Returns the group whose plan is called `wanted`. Without a name, returns the group of the file's only plan.
     /// Returns `None` if there is no such plan, or if it is not the plan of a group.
-    pub fn group(&mut self, wanted: Option<&str>) -> Option<Group> {
+    pub fn group(&mut self, wanted: Option<&str>) -> Option<RobotGroup> {
         let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
         let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
         let own = files.plans.get(..files.own).unwrap_or(&[]);
@@ -123,7 +123,7 @@ impl Input {
             (None, [only]) => Some(only),
             (None, _) => None,
         }?;
-        Some(Group { name: plan.name.node.to_owned(), robots: robots(plan)? })
+        Some(RobotGroup { name: plan.name.node.to_owned(), robots: robots(plan)? })
     }
 
     /// Returns the diagnostics of the file.

@@ -12,8 +12,8 @@ mod text;
 mod unsaved;
 
 pub use error::{FaultyFile, InputError, Spelling};
-pub use input::{Group, Input, add, plan, read_plan};
-pub use settings::{Known, NamedProcess, RunOption, SafetyEntry, Settings, file_beside};
+pub use input::{Input, RobotGroup, add, plan, read_plan};
+pub use settings::{KnownSettings, NamedProcess, RunOption, SafetyEntry, Settings, file_beside};
 pub use target::{Target, alphabet, bound, out_of_date, target};
 pub use text::{read_text, without_mark};
 pub use unsaved::{Unsaved, normal, place};

@@ -27,7 +27,7 @@ pub struct Settings {
 
 /// Worlds and options of a target that are known before a run.
 #[derive(Debug, Default)]
-pub struct Known {
+pub struct KnownSettings {
     /// Names of the worlds; empty if they are not known.
     pub worlds: Vec<&'static str>,
     /// Options of the target, each with the placeholder of its value (empty for an option without a value);
@@ -151,7 +151,7 @@ impl Settings {
         &self,
         target: Option<&str>,
         given: &[String],
-        known: impl Fn(&str) -> Known,
+        known: impl Fn(&str) -> KnownSettings,
     ) -> Result<Vec<RunOption>, InputError> {
         let own = self.text.target.as_ref().map(|own| &*own.value);
         if let (Some(target), Some(own)) = (target, own)
@@ -165,7 +165,7 @@ impl Settings {
             names.map(|argument| argument.split_once('=').map_or(argument, |(name, _)| name)).any(|given| given == name)
         };
         let world = self.text.world.as_ref().filter(|_| !is_given("world"));
-        let Known { worlds, options } = target.or(own).map(known).unwrap_or_default();
+        let KnownSettings { worlds, options } = target.or(own).map(known).unwrap_or_default();
         let world = world.map(|world| self.world(world, &worlds));
         let others = self.text.options.iter().filter(|option| !is_given(&option.name)).map(|option| {
             let place = self.place(option.line);

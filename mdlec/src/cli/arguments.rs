@@ -103,7 +103,7 @@ pub(super) enum Command {
     ///
     /// Reports all errors and warnings of a file in one run, each with its place and, where possible, a correction to
     /// type. Builds nothing. With `--target all`, prints a table of which robots can run which plan.
-    Check(Check),
+    Check(CheckArguments),
     /// Format plans in the canonical layout
     ///
     /// Rewrites each file in place and keeps every comment. A file with errors is not changed.
@@ -138,7 +138,7 @@ pub(super) enum Command {
     /// List the laws, interrupts and signals that a plan can use
     ///
     /// With `--target`, lists those of one robot, and which capability it lacks for the others.
-    Quarks(Quarks),
+    Quarks(QuarksArguments),
     /// Generate the Rust bindings of a target's alphabet
     ///
     /// Writes `src/alphabet.rs` beside `alphabet.mdle`. The target's crate compiles only if it implements the alphabet.
@@ -151,7 +151,7 @@ pub(super) enum Command {
     ///
     /// Opens a pseudo-terminal, speaks the protocol of the robot on it, and moves a simulated body in a world. `mdlec`
     /// becomes the emulator, which runs until a signal comes.
-    Emulator(Emulator),
+    Emulator(EmulatorArguments),
     /// Serve an editor as its language server
     ///
     /// Speaks the Language Server Protocol on standard input and output: an editor starts it and ends it. The page
@@ -248,7 +248,7 @@ pub(super) struct ExecutableArguments {
 
 /// Arguments of `mdlec check`.
 #[derive(Debug, Args)]
-pub(super) struct Check {
+pub(super) struct CheckArguments {
     /// Files of the plans and scenarios
     #[arg(required = true)]
     pub(super) plans: Vec<PathBuf>,
@@ -368,7 +368,7 @@ pub(super) struct Explain {
 
 /// Arguments of `mdlec quarks`.
 #[derive(Debug, Args)]
-pub(super) struct Quarks {
+pub(super) struct QuarksArguments {
     /// Robot whose laws, interrupts and signals to list [default: a robot with every capability]
     #[arg(long, value_name = "NAME|FOLDER")]
     pub(super) target: Option<String>,
@@ -393,7 +393,7 @@ pub(super) struct NewTarget {
 
 /// Arguments of `mdlec emulator`.
 #[derive(Debug, Args)]
-pub(super) struct Emulator {
+pub(super) struct EmulatorArguments {
     /// Robot to emulate
     #[arg(value_parser = PossibleValuesParser::new(link::emulators()))]
     pub(super) robot: String,

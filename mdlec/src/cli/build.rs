@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::compiled::{compile_one, needs_target};
-use super::executable::{self, Runnable};
-use super::{Bare, Build, Emit, EmitKind, ExecutableArguments, Failure, endings, matrices, report, scenario};
+use super::executable::{self, BuiltExecutable};
+use super::{Bare, Build, CommandFailure, Emit, EmitKind, ExecutableArguments, endings, matrices, report, scenario};
 use crate::link;
 use mdle_compiler::syntax::outline;
 use mdle_compiler::{Limit, fsm, picture, rust, syntax};
@@ -12,14 +12,14 @@ use mdle_files::{Input, Settings, Target, read_plan};
 
 /// Runs `mdlec` without a command: builds the executable of a plan or prints another form of the plan and, with
 /// `--run`, runs the executable.
-pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
+pub(super) fn bare(options: &Bare) -> Result<(), CommandFailure> {
     let makes_none = options.build.emit.as_ref().is_some_and(|emit| emit.kind != EmitKind::Exe);
     if options.run && makes_none {
-        return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
+        return Err(CommandFailure::usage("`--run` runs an executable, and this `--emit` makes none"));
     }
     if options.run && options.build.machine.is_some() {
         let why = "`--run` runs the executable here, and `--machine` builds it for another machine: copy it there";
-        return Err(Failure::usage(why));
+        return Err(CommandFailure::usage(why));
     }
     if options.run {
         executable::settings_fit(&options.build.executable, &options.args)?;
@@ -31,13 +31,13 @@ pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
 }
 
 /// Builds the executable of a plan, or prints another form of the plan. Returns the executable, if it was built.
-pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
+pub(super) fn build(options: &Build) -> Result<Option<BuiltExecutable>, CommandFailure> {
     let Build { executable: about, emit, combine, machine } = options;
     let path = executable::begin(about)?;
     let (kind, file) = match emit {
         None => (EmitKind::Exe, about.output.clone()),
         Some(Emit { file: Some(_), .. }) if about.output.is_some() => {
-            return Err(Failure::usage("there are two files to write to: one in `--emit` and one with `-o`"));
+            return Err(CommandFailure::usage("there are two files to write to: one in `--emit` and one with `-o`"));
         }
         Some(Emit { kind, file }) => (*kind, file.clone().or_else(|| about.output.clone())),
     };
@@ -49,13 +49,13 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     }
     if scenario::is_scenario(path) {
         let sentence = "is a scenario, and `--emit` prints a form of a plan\nhelp: name the plan of a robot";
-        return Err(Failure::usage(format!("`{}` {sentence}", path.display())));
+        return Err(CommandFailure::usage(format!("`{}` {sentence}", path.display())));
     }
     if machine.is_some() {
-        return Err(Failure::usage("`--machine` is for executables, and this `--emit` makes none"));
+        return Err(CommandFailure::usage("`--machine` is for executables, and this `--emit` makes none"));
     }
     if *combine && kind != EmitKind::Matrices {
-        return Err(Failure::usage("`--combine` sums matrices: it goes with `--emit matrices`"));
+        return Err(CommandFailure::usage("`--combine` sums matrices: it goes with `--emit matrices`"));
     }
     if kind == EmitKind::Matrices {
         let target = Settings::beside(path)?.target(about.target.as_deref())?;
@@ -67,7 +67,7 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     }
     let (text, inputs) = stage(about, path, kind)?;
     match file {
-        Some(file) => link::write_whole(&file, text.as_bytes(), &inputs).map_err(Failure::from),
+        Some(file) => link::write_whole(&file, text.as_bytes(), &inputs).map_err(CommandFailure::from),
         None if kind.is_for_people() => report::print(&text),
         None => report::print_exactly(&text),
     }?;
@@ -88,7 +88,7 @@ fn limit(kind: EmitKind) -> Limit {
 }
 
 /// Returns the plan's text in the form `kind`, and the files that were read.
-fn stage(options: &ExecutableArguments, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
+fn stage(options: &ExecutableArguments, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), CommandFailure> {
     let settings = Settings::beside(path)?;
     let target = settings.target(options.target.as_deref())?;
     let mut input = read_plan(path, &target)?;
@@ -96,7 +96,7 @@ fn stage(options: &ExecutableArguments, path: &Path, kind: EmitKind) -> Result<(
         let arena = syntax::Arena::new();
         let (tree, found) = syntax::parse(input.source, input.sources.text(input.source), &arena);
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
-        return if good { Ok((outline::outline(&tree), input.inputs(&target))) } else { Err(Failure::PLAN) };
+        return if good { Ok((outline::outline(&tree), input.inputs(&target))) } else { Err(CommandFailure::PLAN) };
     }
     if kind == EmitKind::Projected {
         return Ok((projected(&mut input, &target, options)?, input.inputs(&target)));
@@ -119,24 +119,24 @@ fn stage(options: &ExecutableArguments, path: &Path, kind: EmitKind) -> Result<(
     };
     let text = text.map_err(|too_large| {
         report::diagnostics(&input.sources, &[too_large], false);
-        Failure::PLAN
+        CommandFailure::PLAN
     })?;
     Ok((text, input.inputs(&target)))
 }
 
 /// Checks the plan of a group, and returns the plans of its robots as text.
-fn projected(input: &mut Input, target: &Target, options: &ExecutableArguments) -> Result<String, Failure> {
+fn projected(input: &mut Input, target: &Target, options: &ExecutableArguments) -> Result<String, CommandFailure> {
     let wanted = options.name.as_deref();
     if let Some(name) = wanted {
         input.must_have(name)?;
     }
     let found = input.check(&target.alphabet);
     if !report::diagnostics(&input.sources, &found, options.deny_warnings) {
-        return Err(Failure::PLAN);
+        return Err(CommandFailure::PLAN);
     }
     let text = input.projected(&target.alphabet, wanted);
     match text.is_empty() {
-        true => Err(Failure::usage(format!(
+        true => Err(CommandFailure::usage(format!(
             "`{}` has no group of robots, and `--emit projected` prints the plans of one\nhelp: a group begins with its \
              robots: `{{ Group [robot1 robot2] Name … }}`",
             input.sources.name(input.source)

@@ -6,13 +6,13 @@ use std::path::Path;
 
 use super::each::each;
 use super::everywhere::{ALL, everywhere};
-use super::{Check, Failure, report, scenario};
+use super::{CheckArguments, CommandFailure, report, scenario};
 use crate::link;
 use mdle_compiler::diagnostic::has_errors;
 use mdle_files::{Settings, Target, file_beside};
 
 /// Checks each plan file and prints its diagnostics.
-pub(super) fn check(options: &Check) -> Result<(), Failure> {
+pub(super) fn check(options: &CheckArguments) -> Result<(), CommandFailure> {
     let mut scenarios = options.plans.iter().filter(|path| scenario::is_scenario(path));
     scenarios.try_for_each(|path| {
         let robot = Settings::beside(path)?.name_of_target(options.target.as_deref());
@@ -36,13 +36,13 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
         let mut input = mdle_files::read_plan(path, target)?;
         let found = input.check(&target.alphabet);
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
-        if good && !has_errors(&found) { Ok(()) } else { Err(Failure::PLAN) }
+        if good && !has_errors(&found) { Ok(()) } else { Err(CommandFailure::PLAN) }
     })
 }
 
 /// Returns the target that the `mdle.toml` beside the file `plan` names. Checks the options that a run would take from
 /// this `mdle.toml`.
-fn checked_target(plan: &Path) -> Result<Target, Failure> {
+fn checked_target(plan: &Path) -> Result<Target, CommandFailure> {
     let settings = Settings::beside(plan)?;
     let target = settings.target(None)?;
     settings.run_options(None, &[], link::known)?;

@@ -5,7 +5,7 @@ use std::path::Path;
 use mdle_compiler::{Compiled, Limit, rust};
 use mdle_files::{Input, InputError, Target, read_plan};
 
-use super::{Failure, report};
+use super::{CommandFailure, report};
 
 /// Compiles the plan `name`, or the only plan that no other plan uses, if it is within the limit; messages go to
 /// standard error.
@@ -15,7 +15,7 @@ pub(super) fn compile_one(
     name: Option<&str>,
     deny_warnings: bool,
     limit: Limit,
-) -> Result<Compiled, Failure> {
+) -> Result<Compiled, CommandFailure> {
     compile_judged(input, target, name, deny_warnings, limit, |compiled| compiled)
 }
 
@@ -28,7 +28,7 @@ pub(super) fn compile_judged<T>(
     deny_warnings: bool,
     limit: Limit,
     mut judge: impl FnMut(Compiled) -> T,
-) -> Result<T, Failure> {
+) -> Result<T, CommandFailure> {
     if let Some(name) = name {
         input.must_have(name)?;
     }
@@ -36,13 +36,13 @@ pub(super) fn compile_judged<T>(
     let named = |compiled: Compiled| (compiled.plan.root.name.clone(), compiled);
     let judged: Vec<_> = compiled.into_iter().map(named).map(|(name, compiled)| (name, judge(compiled))).collect();
     if !report::diagnostics(&input.sources, &found, deny_warnings) {
-        return Err(Failure::PLAN);
+        return Err(CommandFailure::PLAN);
     }
     Ok(input.only(judged)?)
 }
 
 /// Fails if no target is named, since Rust code is written for a particular robot.
-pub(super) fn needs_target(is_named: bool) -> Result<(), Failure> {
+pub(super) fn needs_target(is_named: bool) -> Result<(), CommandFailure> {
     if is_named { Ok(()) } else { Err(InputError::NoTarget.into()) }
 }
 
@@ -60,13 +60,13 @@ pub(super) fn emitted(
     target: Target,
     name: Option<&str>,
     deny_warnings: bool,
-) -> Result<Emitted, Failure> {
+) -> Result<Emitted, CommandFailure> {
     let mut input = read_plan(path, &target)?;
     let compiled = compile_one(&mut input, &target, name, deny_warnings, rust::fits)?;
     target.must_be_bound()?;
     let rust = input.rust(&compiled, &target).map_err(|too_large| {
         report::diagnostics(&input.sources, &[too_large], false);
-        Failure::PLAN
+        CommandFailure::PLAN
     })?;
     Ok(Emitted { target, input, plan_name: compiled.plan.root.name, rust })
 }

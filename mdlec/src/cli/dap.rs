@@ -2,13 +2,13 @@
 
 use mdle_debugger::ServeError;
 
-use super::Failure;
+use super::CommandFailure;
 
 /// Serves an editor until it ends the session. The exit status is 1 if the client vanishes, and 2 if it breaks
 /// the protocol.
-pub(super) fn dap() -> Result<(), Failure> {
+pub(super) fn dap() -> Result<(), CommandFailure> {
     mdle_debugger::serve().map_err(|error| match error {
-        ServeError::Vanished => Failure::of(1, error.to_string()),
-        ServeError::Protocol(_) => Failure::usage(error.to_string()),
+        ServeError::Vanished => CommandFailure::of(1, error.to_string()),
+        ServeError::Protocol(_) => CommandFailure::usage(error.to_string()),
     })
 }

@@ -2,17 +2,17 @@
 
 use std::path::Path;
 
-use super::{Decompile, Failure, report};
+use super::{CommandFailure, Decompile, report};
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::syntax;
 use mdle_files::read::LARGEST_DATA;
-use mdle_theory::theorem::{Answer, Machine, as_printed, augment, decompile as theorem, monomial, read, string};
+use mdle_theory::theorem::{Machine, TheoremResult, as_printed, augment, decompile as theorem, monomial, read, string};
 
 /// Maximum number of states for which the matrices of a machine are printed.
 const SHOWN: usize = 12;
 
 /// Prints the plan of a machine or, with `--as-printed`, whether the conditions as printed in the paper hold.
-pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
+pub(super) fn decompile(options: &Decompile) -> Result<(), CommandFailure> {
     let file = options.machine.display();
     let text = mdle_files::read_text(&options.machine, LARGEST_DATA)?;
     let machine = read(&text).map_err(|error| {
@@ -27,9 +27,9 @@ pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
         report::print(&printed(&machine, &answer))?;
     }
     match answer {
-        Answer::String(_) if options.as_printed => Ok(()),
-        Answer::String(found) => print(&options.machine, &string(&machine, &found)),
-        Answer::None(broken) => {
+        TheoremResult::String(_) if options.as_printed => Ok(()),
+        TheoremResult::String(found) => print(&options.machine, &string(&machine, &found)),
+        TheoremResult::None(broken) => {
             let count = broken.len();
             let mut message = format!("{file}: no MDLe string is equivalent to this machine (Theorem 1)");
             broken.iter().take(CONDITIONS).for_each(|broken| message += &format!("\n  {}", broken.sentence(&machine)));
@@ -38,7 +38,7 @@ pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
             }
             Err(refused(format!("{message}\nhelp: `mdlec decompile --augment {file}` makes a plan with `after` of it")))
         }
-        Answer::Stopped(steps) => Err(refused(format!(
+        TheoremResult::Stopped(steps) => Err(refused(format!(
             "{file}: the search for an order of its states was stopped after {steps} steps: whether this machine has an MDLe string is \
              not known\nhelp: `--steps {}` searches longer; `--augment` makes a plan with `after` of any machine",
             steps.saturating_mul(10)
@@ -49,13 +49,13 @@ pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
 /// Maximum number of failed conditions in a message.
 const CONDITIONS: usize = 100;
 
-fn refused(message: String) -> Failure {
-    Failure::of(1, message)
+fn refused(message: String) -> CommandFailure {
+    CommandFailure::of(1, message)
 }
 
 /// Prints a plan in the canonical layout. Reports an error if laws or conditions in the machine's file are not valid
 /// MDLe.
-fn print(file: &Path, plan: &str) -> Result<(), Failure> {
+fn print(file: &Path, plan: &str) -> Result<(), CommandFailure> {
     let mut sources = Sources::default();
     let source = mdle_files::add(&mut sources, Path::new(&format!("the plan of {}", file.display())), plan.to_owned())?;
     match syntax::format(source, plan) {
@@ -69,7 +69,7 @@ fn print(file: &Path, plan: &str) -> Result<(), Failure> {
 
 /// Returns a report on the conditions as printed in the paper: whether they hold for a machine, and how they differ
 /// from the exact conditions.
-fn printed(machine: &Machine, exactly: &Answer) -> String {
+fn printed(machine: &Machine, exactly: &TheoremResult) -> String {
     let mut text = String::new();
     if machine.states().len() <= SHOWN {
         text += &monomial(machine);
@@ -89,13 +89,14 @@ fn printed(machine: &Machine, exactly: &Answer) -> String {
     let letter = rules.iter().all(|rule| rule.letter.is_none());
     let meant = rules.iter().all(|rule| rule.meant.is_none());
     let exact = match exactly {
-        Answer::String(_) => verdict(true),
-        Answer::None(_) => verdict(false),
-        Answer::Stopped(_) => "the search was stopped",
+        TheoremResult::String(_) => verdict(true),
+        TheoremResult::None(_) => verdict(false),
+        TheoremResult::Stopped(_) => "the search was stopped",
     };
     let differ = match (meant, exactly) {
-        (true, Answer::None(_)) | (false, Answer::String(_)) => ": they differ",
-        (true, Answer::String(_) | Answer::Stopped(_)) | (false, Answer::None(_) | Answer::Stopped(_)) => "",
+        (true, TheoremResult::None(_)) | (false, TheoremResult::String(_)) => ": they differ",
+        (true, TheoremResult::String(_) | TheoremResult::Stopped(_))
+        | (false, TheoremResult::None(_) | TheoremResult::Stopped(_)) => "",
     };
     text + &format!(
         "to the letter: {}\nas intended:   {}\nexactly:       {exact}{differ}\n",

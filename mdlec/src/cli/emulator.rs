@@ -5,11 +5,11 @@ use std::process::Command;
 
 use super::executable::{become_program, take_signals};
 use super::progress::ProgressOutput;
-use super::{Emulator, Failure};
+use super::{CommandFailure, EmulatorArguments};
 use crate::link::{self, Cache};
 
 /// Builds the emulator of a robot, and replaces this process by it.
-pub(super) fn emulator(options: &Emulator) -> Result<(), Failure> {
+pub(super) fn emulator(options: &EmulatorArguments) -> Result<(), CommandFailure> {
     take_signals()?;
     let robot = &options.robot;
     let mut shown = ProgressOutput::default();

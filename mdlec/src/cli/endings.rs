@@ -3,16 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{EmitKind, Failure};
+use super::{CommandFailure, EmitKind};
 
 /// Extensions of picture files.
 const PICTURES: [&str; 12] = ["svg", "png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps"];
 
 /// Refuses a file name for the picture of `mdlec draw` if it has an extension other than `.svg`.
-pub(super) fn svg(file: &Path) -> Result<(), Failure> {
+pub(super) fn svg(file: &Path) -> Result<(), CommandFailure> {
     let Some(given) = file.extension().filter(|given| !given.eq_ignore_ascii_case("svg")) else { return Ok(()) };
     let (shown, name) = (file.display(), file.with_extension("svg"));
-    Err(Failure::usage(format!(
+    Err(CommandFailure::usage(format!(
         "`{shown}`: `mdlec draw` writes SVG, not {}\nhelp: name the file `{}`",
         given.to_string_lossy().to_uppercase(),
         name.display()
@@ -21,7 +21,7 @@ pub(super) fn svg(file: &Path) -> Result<(), Failure> {
 
 /// Refuses the extension of a picture file for an executable or for a form of `plan`, since none of them is a picture
 /// file.
-pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(), Failure> {
+pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(), CommandFailure> {
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !PICTURES.iter().any(|picture| ending.eq_ignore_ascii_case(picture)) {
         return Ok(());
@@ -42,7 +42,7 @@ pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(),
         | EmitKind::Rust => "text",
     };
     let picture: PathBuf = file.with_extension("svg");
-    Err(Failure::usage(format!(
+    Err(CommandFailure::usage(format!(
         "`{}`: this command writes {written}, not a picture\nhelp: `mdlec draw {} -o {}` draws the plan",
         file.display(),
         plan.display(),

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::each::each;
-use super::{Check, Failure, report};
+use super::{CheckArguments, CommandFailure, report};
 use mdle_compiler::diagnostic::{Severity, has_errors};
 use mdle_files::Target;
 use mdle_files::read::LARGEST_PLAN;
@@ -12,18 +12,19 @@ use mdle_files::read::LARGEST_PLAN;
 pub(super) const ALL: &str = "all";
 
 /// A plan file, with its errors for each robot. A robot without errors can run the plan.
-struct Row {
+struct PlanRow {
     name: String,
     refusals: Vec<Vec<String>>,
 }
 
 /// Checks each plan file for a robot with every capability, then for each robot. It is not an error if a robot cannot
 /// run a plan.
-pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
+pub(super) fn everywhere(options: &CheckArguments) -> Result<(), CommandFailure> {
     let everything = mdle_files::target(None)?;
     let names =
         mdle_compiler::builtin::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| alphabet.name);
-    let robots = names.map(|name| Ok((name, mdle_files::target(Some(name))?))).collect::<Result<Vec<_>, Failure>>()?;
+    let robots =
+        names.map(|name| Ok((name, mdle_files::target(Some(name))?))).collect::<Result<Vec<_>, CommandFailure>>()?;
     let mut rows = Vec::new();
     let checked = each(&options.plans, |path| {
         let text = mdle_files::read_text(path, LARGEST_PLAN)?;
@@ -31,10 +32,10 @@ pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
         let found = plan.check(&everything.alphabet);
         let good = report::diagnostics(&plan.sources, &found, options.deny_warnings);
         if !good || has_errors(&found) {
-            return Err(Failure::PLAN);
+            return Err(CommandFailure::PLAN);
         }
         let refusals = robots.iter().map(|(_, robot)| refusals(path, &text, robot)).collect::<Result<_, _>>()?;
-        rows.push(Row { name: path.display().to_string(), refusals });
+        rows.push(PlanRow { name: path.display().to_string(), refusals });
         Ok(())
     });
     let names: Vec<_> = robots.iter().map(|(name, _)| *name).collect();
@@ -43,7 +44,7 @@ pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
 }
 
 /// Returns the errors of a plan file for a robot, with their places and messages.
-fn refusals(path: &Path, text: &str, robot: &Target) -> Result<Vec<String>, Failure> {
+fn refusals(path: &Path, text: &str, robot: &Target) -> Result<Vec<String>, CommandFailure> {
     let mut plan = mdle_files::plan(path, text.to_owned(), robot)?;
     let found = plan.check(&robot.alphabet);
     let errors = found.iter().filter(|found| found.code.severity() == Severity::Error);
@@ -56,7 +57,7 @@ fn refusals(path: &Path, text: &str, robot: &Target) -> Result<Vec<String>, Fail
 }
 
 /// Returns a table with a line for each plan and a column for each robot.
-fn table(robots: &[&str], rows: &[Row]) -> String {
+fn table(robots: &[&str], rows: &[PlanRow]) -> String {
     let width = rows.iter().map(|row| row.name.chars().count()).chain(["plan".len()]).max().unwrap_or(0);
     let line = |name: &str, cells: Vec<&str>| {
         let cells: String =
@@ -69,7 +70,7 @@ fn table(robots: &[&str], rows: &[Row]) -> String {
 }
 
 /// Returns the errors of all plans and robots, one per line.
-fn reasons(rows: &[Row]) -> String {
+fn reasons(rows: &[PlanRow]) -> String {
     let refusals = rows.iter().flat_map(|row| row.refusals.iter().flatten());
     let lines: Vec<_> = refusals.map(|refusal| format!("{refusal}\n")).collect();
     if lines.is_empty() { String::new() } else { format!("\n{}", lines.concat()) }

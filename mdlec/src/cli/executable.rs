@@ -8,13 +8,13 @@ use std::time::Instant;
 use super::compiled::{Emitted, emitted, needs_target};
 use super::progress::{ProgressOutput, build_package};
 use super::version::version;
-use super::{EmitKind, ExecutableArguments, Failure, RunArguments, endings, scenario};
+use super::{CommandFailure, EmitKind, ExecutableArguments, RunArguments, endings, scenario};
 use crate::link::{self, Entry, Package, TargetCrate};
 use mdle_compiler::rust;
 use mdle_files::{RunOption, SafetyEntry, Settings};
 
 /// Builds the executable of a plan, and replaces this process by it.
-pub(super) fn run(options: &RunArguments) -> Result<(), Failure> {
+pub(super) fn run(options: &RunArguments) -> Result<(), CommandFailure> {
     let path = begin(&options.executable)?;
     let output = options.executable.output.clone();
     if let Some(output) = &output {
@@ -26,32 +26,32 @@ pub(super) fn run(options: &RunArguments) -> Result<(), Failure> {
 
 /// Checks the `mdle.toml` beside a plan before the build: the options that it adds to a run with the arguments `args`
 /// must be valid, and it must not name safety rules, which an executable does not support.
-pub(super) fn settings_fit(options: &ExecutableArguments, args: &[String]) -> Result<(), Failure> {
+pub(super) fn settings_fit(options: &ExecutableArguments, args: &[String]) -> Result<(), CommandFailure> {
     // A scenario takes no options from an `mdle.toml`.
     let Some(path) = options.plan.as_ref().filter(|path| !scenario::is_scenario(path)) else { return Ok(()) };
     let settings = Settings::beside(path)?;
     if let Some(SafetyEntry { place, .. }) = settings.safety() {
         let sentence = format!("{place}: `mdlec run` has no safety rules\nhelp: use `mdle run {}`", path.display());
-        return Err(Failure::usage(sentence));
+        return Err(CommandFailure::usage(sentence));
     }
     settings.run_options(options.target.as_deref(), args, link::known)?;
     Ok(())
 }
 
 /// Installs the signal handlers of `take_signals`, and returns the file of the plan.
-pub(super) fn begin(options: &ExecutableArguments) -> Result<&Path, Failure> {
+pub(super) fn begin(options: &ExecutableArguments) -> Result<&Path, CommandFailure> {
     take_signals()?;
-    options.plan.as_deref().ok_or_else(|| Failure::usage("no plan was given"))
+    options.plan.as_deref().ok_or_else(|| CommandFailure::usage("no plan was given"))
 }
 
 /// Installs handlers for signals that end this process. They remove its child processes and unfinished files first.
-pub(super) fn take_signals() -> Result<(), Failure> {
+pub(super) fn take_signals() -> Result<(), CommandFailure> {
     link::leave_nothing_behind(ProgressOutput::wipe)
-        .map_err(|error| Failure::usage(format!("this system does not let signals be caught: {error}")))
+        .map_err(|error| CommandFailure::usage(format!("this system does not let signals be caught: {error}")))
 }
 
 /// An executable that was built, with the settings of its plan.
-pub(super) struct Runnable {
+pub(super) struct BuiltExecutable {
     path: PathBuf,
     /// Settings of the plan; empty for a scenario, which takes no options from an `mdle.toml`.
     settings: Settings,
@@ -64,10 +64,10 @@ pub(super) fn build(
     path: &Path,
     output: Option<PathBuf>,
     machine: Option<&str>,
-) -> Result<Runnable, Failure> {
+) -> Result<BuiltExecutable, CommandFailure> {
     if scenario::is_scenario(path) {
         let path = scenario::build(options, path, output, machine)?;
-        return Ok(Runnable { path, settings: Settings::default() });
+        return Ok(BuiltExecutable { path, settings: Settings::default() });
     }
     let started = Instant::now();
     let settings = Settings::beside(path)?;
@@ -96,13 +96,13 @@ pub(super) fn build(
         machine,
     };
     build_package(&package, &output, target.folder.as_deref(), started)?;
-    Ok(Runnable { path: output, settings })
+    Ok(BuiltExecutable { path: output, settings })
 }
 
-impl Runnable {
+impl BuiltExecutable {
     /// Replaces this process by the executable, with the options of `mdle.toml` before `args`. `target` is the target
     /// on the command line.
-    pub(super) fn become_it(&self, target: Option<&str>, args: &[String]) -> Result<(), Failure> {
+    pub(super) fn become_it(&self, target: Option<&str>, args: &[String]) -> Result<(), CommandFailure> {
         let program = if self.path.is_absolute() { self.path.clone() } else { Path::new(".").join(&self.path) };
         let options = self.settings.run_options(target, args, link::known)?;
         options.iter().try_for_each(|option| must_fit(option, &program))?;
@@ -115,7 +115,7 @@ impl Runnable {
 ///
 /// An executable checks its arguments in order and does nothing else before it answers `--version`, so this call only
 /// checks the option.
-fn must_fit(option: &RunOption, program: &Path) -> Result<(), Failure> {
+fn must_fit(option: &RunOption, program: &Path) -> Result<(), CommandFailure> {
     let answer = Command::new(program).args(&option.arguments).arg("--version").stdin(Stdio::null()).output();
     // If the program cannot be started, replacing this process fails as well and reports the reason.
     match answer.ok().filter(|answer| answer.status.code() == Some(2)) {
@@ -126,7 +126,7 @@ fn must_fit(option: &RunOption, program: &Path) -> Result<(), Failure> {
 
 /// Replaces this process by a program. The program's exit status becomes that of this process, and signals to this
 /// process reach the program.
-pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
+pub(super) fn become_program(command: &mut Command) -> Result<(), CommandFailure> {
     let error = command.exec();
-    Err(Failure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))
+    Err(CommandFailure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))
 }

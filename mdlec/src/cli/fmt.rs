@@ -5,14 +5,14 @@ use std::io::{self, IsTerminal};
 use std::path::Path;
 
 use super::each::each;
-use super::{Failure, Fmt, report};
+use super::{CommandFailure, Fmt, report};
 use crate::link;
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::syntax;
 use mdle_files::read::LARGEST_PLAN;
 
 /// Formats each file, or lists the files whose layout differs. A file with errors stays unchanged.
-pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
+pub(super) fn fmt(options: &Fmt) -> Result<(), CommandFailure> {
     each(&options.plans, |path| {
         let text = mdle_files::read_text(path, LARGEST_PLAN)?;
         let formatted = formatted(path, text.clone())?;
@@ -29,25 +29,25 @@ pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
     })
 }
 
-fn formatted(path: &Path, text: String) -> Result<String, Failure> {
+fn formatted(path: &Path, text: String) -> Result<String, CommandFailure> {
     let mut sources = Sources::default();
     let source = mdle_files::add(&mut sources, path, text)?;
     syntax::format(source, sources.text(source)).map_err(|found| {
         report::diagnostics(&sources, &found, false);
-        Failure::PLAN
+        CommandFailure::PLAN
     })
 }
 
 /// Prints the path of a file whose layout differs, and fails with exit status 1.
-fn differs(path: &Path) -> Result<(), Failure> {
+fn differs(path: &Path) -> Result<(), CommandFailure> {
     report::print(&format!("{}\n", path.display()))?;
-    Err(Failure::PLAN)
+    Err(CommandFailure::PLAN)
 }
 
 /// Overwrites a file, unless it is read-only.
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
+fn write(path: &Path, text: &str) -> Result<(), CommandFailure> {
     if fs::metadata(path).is_ok_and(|found| found.permissions().readonly()) {
-        return Err(Failure::usage(format!("`{}` is read-only", path.display())));
+        return Err(CommandFailure::usage(format!("`{}` is read-only", path.display())));
     }
-    link::write_whole(path, text.as_bytes(), &[]).map_err(Failure::from)
+    link::write_whole(path, text.as_bytes(), &[]).map_err(CommandFailure::from)
 }

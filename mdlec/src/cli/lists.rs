@@ -5,10 +5,10 @@ use mdle_compiler::builtin;
 use mdle_compiler::plan::signature;
 use mdle_files::target;
 
-use super::{Failure, report};
+use super::{CommandFailure, report};
 
 /// Prints the list of `mdlec targets`.
-pub(super) fn print_targets() -> Result<(), Failure> {
+pub(super) fn print_targets() -> Result<(), CommandFailure> {
     let mut text = String::new();
     for builtin in builtin::alphabets().iter().filter(|alphabet| alphabet.target) {
         let target = target(Some(builtin.name))?;
@@ -22,7 +22,7 @@ pub(super) fn print_targets() -> Result<(), Failure> {
 const WIDEST: usize = 100;
 
 /// Prints the list of `mdlec quarks`.
-pub(super) fn print_quarks(option: Option<&str>) -> Result<(), Failure> {
+pub(super) fn print_quarks(option: Option<&str>) -> Result<(), CommandFailure> {
     let target = target(option)?;
     let widths = target.alphabet.declarations().map(|declaration| signature(declaration).chars().count());
     let width = widths.filter(|width| *width <= WIDEST).max().unwrap_or(0);

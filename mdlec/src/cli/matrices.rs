@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use super::{Failure, report};
+use super::{CommandFailure, report};
 use crate::link;
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::diagnostic::{Code, Diagnostic};
@@ -18,15 +18,15 @@ pub(super) fn matrices(
     folder: Option<&Path>,
     sources: &Sources,
     inputs: &[PathBuf],
-) -> Result<(), Failure> {
+) -> Result<(), CommandFailure> {
     let refused = |found: Diagnostic| {
         report::diagnostics(sources, &[found], false);
-        Failure::PLAN
+        CommandFailure::PLAN
     };
     let terms = equations::terms(plan, combined).map_err(refused)?;
     let Some(folder) = folder else {
         let text = equations::equation(&terms).ok_or_else(|| {
-            Failure::usage(format!(
+            CommandFailure::usage(format!(
                 "this plan has {} states, and matrices of more than {} are not for a terminal\nhelp: have them written as \
                  MatrixMarket files into a folder: `--emit matrices=FOLDER`; `--emit fsm` lists only the transitions",
                 terms.states(),
@@ -55,8 +55,8 @@ pub(super) fn matrices(
 
 /// Writes the matrix files and then their list, and returns the number of matrices. If the folder contains an earlier
 /// list, its matrix files are removed first.
-fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Result<usize, Failure> {
-    let failed = |error: io::Error| Failure::usage(format!("`{}` cannot be written: {error}", folder.display()));
+fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Result<usize, CommandFailure> {
+    let failed = |error: io::Error| CommandFailure::usage(format!("`{}` cannot be written: {error}", folder.display()));
     fs::create_dir_all(folder).map_err(failed)?;
     let old = matrix_files_in(folder).map_err(failed)?;
     let list = folder.join(MatrixFiles::LIST);
@@ -65,8 +65,9 @@ fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Resu
     if list.exists() {
         old.iter().try_for_each(fs::remove_file).map_err(failed)?;
     }
-    let put =
-        |name: &str, text: &str| link::write_whole(&folder.join(name), text.as_bytes(), inputs).map_err(Failure::from);
+    let put = |name: &str, text: &str| {
+        link::write_whole(&folder.join(name), text.as_bytes(), inputs).map_err(CommandFailure::from)
+    };
     let mut count = 0;
     for (name, text) in files.files() {
         put(&name, &text)?;

@@ -9,7 +9,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, CommandFactory as _};
 
 use super::words::words;
-use super::{Cli, Failure};
+use super::{Cli, CommandFailure};
 use crate::link;
 use mdle_compiler::{alphabet, builtin};
 
@@ -28,7 +28,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
 
 /// Returns the error for a first argument that resembles a command and is not a file, which clap would take for a plan.
 /// Returns `None` for any other first argument.
-pub(super) fn command() -> Option<Failure> {
+pub(super) fn command() -> Option<CommandFailure> {
     let cli = Cli::command();
     let word = words(&cli).into_iter().nth(1).and_then(|word| word.into_string().ok());
     let word = word.filter(|word| !word.starts_with('-') && !word.contains(['.', '/']))?;
@@ -38,14 +38,14 @@ pub(super) fn command() -> Option<Failure> {
     }
     let meant = || SYNONYMS.iter().find(|(_, words)| words.contains(&word.as_str())).map(|(command, _)| *command);
     let near = meant().or_else(|| alphabet::nearest(&word, names.iter().copied()))?;
-    Some(Failure::usage(format!(
+    Some(CommandFailure::usage(format!(
         "there is no command `{word}`; did you mean `mdlec {near}`?\nhelp: `mdlec --help` lists all commands"
     )))
 }
 
 /// Returns the error for an option that the given command does not have, but other commands have. `answer` is the error
 /// of clap.
-pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
+pub(super) fn option(answer: &clap::Error) -> Option<CommandFailure> {
     let Some(ContextValue::String(given)) = answer.get(ContextKind::InvalidArg) else { return None };
     if answer.kind() != ErrorKind::UnknownArgument {
         return None;
@@ -74,7 +74,7 @@ pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
         }
         None => return None,
     };
-    Some(Failure::usage(format!(
+    Some(CommandFailure::usage(format!(
         "`mdlec {command}` has no option `{given}`: it belongs to {owners}\nhelp: `mdlec {command} --help` lists the options"
     )))
 }
@@ -90,25 +90,25 @@ fn meaning(option: &Arg) -> String {
 }
 
 /// Returns the error for a robot that is named without `--target`; `answer` is the error of clap.
-pub(super) fn robot(answer: &clap::Error) -> Option<Failure> {
+pub(super) fn robot(answer: &clap::Error) -> Option<CommandFailure> {
     let (given, cli) = (unexpected(answer)?, Cli::command());
     let command = env::args().skip(1).find_map(|word| cli.find_subcommand(word))?;
     command.get_arguments().find(|argument| argument.get_long() == Some("target"))?;
     let robots = builtin::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| alphabet.name);
     let (name, robot) = (command.get_name(), alphabet::nearest(given, robots)?);
-    Some(Failure::usage(format!(
+    Some(CommandFailure::usage(format!(
         "`mdlec {name}` does not expect `{given}` here\nhelp: a robot is named with an option: `--target {robot}`"
     )))
 }
 
 /// Returns the error for `mdlec emulator` with a robot that has no emulator; `answer` is the error of clap.
-pub(super) fn emulator(answer: &clap::Error) -> Option<Failure> {
+pub(super) fn emulator(answer: &clap::Error) -> Option<CommandFailure> {
     let Some(ContextValue::String(given)) = answer.get(ContextKind::InvalidValue) else { return None };
     let cli = Cli::command();
     let command = env::args().skip(1).find_map(|word| cli.find_subcommand(word))?;
     let is_robot = builtin::alphabets().iter().any(|alphabet| alphabet.target && alphabet.name == given);
     (command.get_name() == "emulator" && is_robot).then(|| {
-        Failure::usage(format!(
+        CommandFailure::usage(format!(
             "`{given}` has no emulator: it is simulated by each executable\nhelp: `mdlec run PLAN --target {given}` runs a \
              plan on it; emulators are for {}",
             link::emulators().collect::<Vec<_>>().join(" and ")

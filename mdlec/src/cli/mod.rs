@@ -34,7 +34,7 @@ mod words;
 use std::process::ExitCode;
 
 use arguments::{
-    Analyze, Bare, Bind, Build, Check, Cli, Color, Command, Completions, Decompile, Draw, Emulator,
+    Analyze, Bare, Bind, Build, CheckArguments, Cli, Color, Command, Completions, Decompile, Draw, EmulatorArguments,
     ExecutableArguments, Fmt, Man, MessageFormat, NewTarget, RunArguments, Trace, TraceMachine,
 };
 use clap::{CommandFactory as _, FromArgMatches as _, ValueEnum as _};
@@ -46,7 +46,7 @@ use crate::link::LinkError;
 
 /// Message and exit status of a command that failed.
 #[derive(Debug)]
-struct Failure {
+struct CommandFailure {
     status: u8,
     /// Diagnostics of a file that was read, which are printed before the message.
     found: Option<Box<(Sources, Vec<Diagnostic>)>>,
@@ -54,7 +54,7 @@ struct Failure {
     message: Option<String>,
 }
 
-impl From<InputError> for Failure {
+impl From<InputError> for CommandFailure {
     /// Converts an input error: exit status 1 for a plan with errors, and 2 for everything else.
     fn from(error: InputError) -> Self {
         let message = Some(error.to_string()).filter(|message| !message.is_empty());
@@ -68,13 +68,13 @@ impl From<InputError> for Failure {
     }
 }
 
-impl From<LinkError> for Failure {
+impl From<LinkError> for CommandFailure {
     fn from(error: LinkError) -> Self {
         Self::of(error.exit_status(), error.to_string())
     }
 }
 
-impl Failure {
+impl CommandFailure {
     /// Returns the failure for wrong usage, or for a file that cannot be read or written: exit status 2.
     fn usage(message: impl Into<String>) -> Self {
         Self::of(2, message)
@@ -149,7 +149,7 @@ fn color_of_help() -> Color {
 }
 
 /// Runs the command of `cli`.
-fn run(cli: Cli) -> Result<(), Failure> {
+fn run(cli: Cli) -> Result<(), CommandFailure> {
     report::choose(cli.message_format, cli.color);
     match cli.command {
         None => match mistyped::command() {

@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-use super::{Bind, Failure, NewTarget, bind, report};
+use super::{Bind, CommandFailure, NewTarget, bind, report};
 use mdle_compiler::builtin;
 
 /// Word in the template's files that the robot's name replaces.
@@ -24,15 +24,17 @@ const FILES: [(&str, &str); 6] = [
 ];
 
 /// Writes the folder of a new robot, completely or not at all, and prints the next steps.
-pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
+pub(super) fn new_target(options: &NewTarget) -> Result<(), CommandFailure> {
     let name = options.name.as_str();
     must_be_free(name)?;
     let folder = Path::new(name);
     fs::create_dir(folder).map_err(|error| {
         if error.kind() == io::ErrorKind::AlreadyExists {
-            Failure::usage(format!("`{name}` is there already\nhelp: take another name, or go to another folder"))
+            CommandFailure::usage(format!(
+                "`{name}` is there already\nhelp: take another name, or go to another folder"
+            ))
         } else {
-            Failure::usage(format!("the folder `{name}` cannot be made: {error}"))
+            CommandFailure::usage(format!("the folder `{name}` cannot be made: {error}"))
         }
     })?;
     fill(folder, name).inspect_err(|_| {
@@ -47,8 +49,8 @@ pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
 }
 
 /// Writes the files of a new robot into an empty folder.
-fn fill(folder: &Path, name: &str) -> Result<(), Failure> {
-    let refused = |error| Failure::usage(format!("`{name}` cannot be written: {error}"));
+fn fill(folder: &Path, name: &str) -> Result<(), CommandFailure> {
+    let refused = |error| CommandFailure::usage(format!("`{name}` cannot be written: {error}"));
     for inside in ["src", "tests"] {
         fs::create_dir(folder.join(inside)).map_err(refused)?;
     }
@@ -74,9 +76,9 @@ fn named(file: &str, text: &str, name: &str) -> String {
 }
 
 /// Fails if the name conflicts with a package, a file or a reserved word of `--target`.
-fn must_be_free(name: &str) -> Result<(), Failure> {
+fn must_be_free(name: &str) -> Result<(), CommandFailure> {
     if is_taken(name) {
-        return Err(Failure::usage(format!(
+        return Err(CommandFailure::usage(format!(
             "`{name}` is a word that `--target` knows already\nhelp: take another name, such as `my_{name}`"
         )));
     }
@@ -84,7 +86,7 @@ fn must_be_free(name: &str) -> Result<(), Failure> {
         return Ok(());
     }
     let near = near(name);
-    Err(Failure::usage(format!(
+    Err(CommandFailure::usage(format!(
         "`{name}` cannot be the name of a robot: write small letters, digits and `_`, a letter first, {LONGEST} at most\n\
          help: `mdlec new-target {near}`"
     )))

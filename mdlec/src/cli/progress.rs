@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use mdle_runtime::Printable;
 
-use super::{Failure, report};
+use super::{CommandFailure, report};
 use crate::link::{self, BuildStep, Built, Cache, Package};
 
 /// Builds a package, shows the progress, and prints a note about the executable. `target` is the folder of a
@@ -16,7 +16,7 @@ pub(super) fn build_package(
     output: &Path,
     target: Option<&Path>,
     started: Instant,
-) -> Result<(), Failure> {
+) -> Result<(), CommandFailure> {
     let mut shown = ProgressOutput::default();
     let built = Cache::of_user()
         .and_then(|cache| link::build(&cache, package, output, &mut |progress| shown.progress(&progress)));

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_runtime::{PrintableLines, is_printable};
 
-use super::{Color, Failure, MessageFormat};
+use super::{Color, CommandFailure, MessageFormat};
 use mdle_compiler::diagnostic::{Diagnostic, Message, Sources, has_errors, judged};
 
 /// Format of all messages of this process. It is set once, when the command line is read.
@@ -83,20 +83,20 @@ pub(super) fn note(message: impl Display) {
 }
 
 /// Prints text for people to standard output, with control characters made printable; a closed pipe is not an error.
-pub(super) fn print(text: &str) -> Result<(), Failure> {
+pub(super) fn print(text: &str) -> Result<(), CommandFailure> {
     print_exactly(&PrintableLines(text).to_string())
 }
 
 /// Prints text for programs to standard output unchanged; a closed pipe is not an error.
-pub(super) fn print_exactly(text: &str) -> Result<(), Failure> {
+pub(super) fn print_exactly(text: &str) -> Result<(), CommandFailure> {
     let mut out = io::stdout().lock();
     printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
 /// Converts the result of printing to standard output; a closed pipe is not an error.
-pub(super) fn printed(result: io::Result<()>) -> Result<(), Failure> {
+pub(super) fn printed(result: io::Result<()>) -> Result<(), CommandFailure> {
     match result {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::usage(format!(
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(CommandFailure::usage(format!(
             "standard output cannot be written ({error}): make room where it goes, or send it elsewhere"
         ))),
         Ok(()) | Err(_) => Ok(()),
@@ -104,7 +104,7 @@ pub(super) fn printed(result: io::Result<()>) -> Result<(), Failure> {
 }
 
 /// Prints the output of clap: the requested help or version, or a usage error.
-pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
+pub(super) fn answer(answer: &clap::Error) -> Result<(), CommandFailure> {
     // Control characters in clap's text can come only from the arguments. They cannot be told apart from clap's own
     // colour codes, so such a text is printed without colours.
     let is_plain = |argument: OsString| argument.to_string_lossy().chars().all(is_printable);
@@ -114,5 +114,5 @@ pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
         let text = PrintableLines(answer.render()).to_string();
         if answer.use_stderr() { write!(io::stderr(), "{text}") } else { write!(io::stdout(), "{text}") }
     };
-    if answer.use_stderr() { Err(Failure::silent(2)) } else { printed(result) }
+    if answer.use_stderr() { Err(CommandFailure::silent(2)) } else { printed(result) }
 }

@@ -10,7 +10,7 @@ pub(super) use mdle::is_scenario;
 use super::compiled::needs_target;
 use super::progress::build_package;
 use super::version::version;
-use super::{ExecutableArguments, Failure, report};
+use super::{CommandFailure, ExecutableArguments, report};
 use crate::link::{Entry, Package, TargetCrate};
 use mdle_files::{Settings, target};
 
@@ -23,7 +23,7 @@ pub(super) fn build(
     path: &Path,
     output: Option<PathBuf>,
     machine: Option<&str>,
-) -> Result<PathBuf, Failure> {
+) -> Result<PathBuf, CommandFailure> {
     let started = Instant::now();
     must_fit(options, path)?;
     let files = files(path)?;
@@ -46,44 +46,44 @@ pub(super) fn build(
 }
 
 /// Checks a scenario, its plans and its other files.
-pub(super) fn check(path: &Path, deny_warnings: bool) -> Result<(), Failure> {
+pub(super) fn check(path: &Path, deny_warnings: bool) -> Result<(), CommandFailure> {
     must_be_plain(deny_warnings)?;
     files(path).map(drop)
 }
 
 /// Returns the names and contents of the scenario's files; prints the errors if there are any.
-fn files(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    mdle::scenario_files(path).map_err(Failure::silent)
+fn files(path: &Path) -> Result<Vec<(String, Vec<u8>)>, CommandFailure> {
+    mdle::scenario_files(path).map_err(CommandFailure::silent)
 }
 
 /// Refuses options that only a single plan supports, and robots other than the simulated one.
-fn must_fit(options: &ExecutableArguments, path: &Path) -> Result<(), Failure> {
+fn must_fit(options: &ExecutableArguments, path: &Path) -> Result<(), CommandFailure> {
     let settings = Settings::beside(path)?;
     needs_target(settings.names_target(options.target.as_deref()))?;
     let robot = settings.name_of_target(options.target.as_deref()).unwrap_or_default();
     must_be_simulated(path, &robot)?;
     if options.name.is_some() {
         let sentence = "`--plan` is for one robot, and a scenario names the plan of each\nhelp: leave it out";
-        return Err(Failure::usage(sentence));
+        return Err(CommandFailure::usage(sentence));
     }
     must_be_plain(options.deny_warnings)
 }
 
 /// Refuses a robot other than the simulated one for the scenario in the file at `path`.
-pub(super) fn must_be_simulated(path: &Path, robot: &str) -> Result<(), Failure> {
+pub(super) fn must_be_simulated(path: &Path, robot: &str) -> Result<(), CommandFailure> {
     if robot == SIM {
         return Ok(());
     }
     let help = format!("use `--target {SIM}`; for other robots, name the file of the plan of each");
     let sentence = format!("is a scenario, whose robots are simulated, and the target is `{robot}`");
-    Err(Failure::usage(format!("`{}` {sentence}\nhelp: {help}", path.display())))
+    Err(CommandFailure::usage(format!("`{}` {sentence}\nhelp: {help}", path.display())))
 }
 
 /// Refuses options that change messages, because `mdle` prints the messages about a scenario.
-fn must_be_plain(deny_warnings: bool) -> Result<(), Failure> {
+fn must_be_plain(deny_warnings: bool) -> Result<(), CommandFailure> {
     let given = [(deny_warnings, "--deny-warnings"), (report::is_json(), "--message-format json")];
     let Some((_, name)) = given.into_iter().find(|(is_given, _)| *is_given) else { return Ok(()) };
-    Err(Failure::usage(format!("`{name}` is for plans, and this is a scenario\nhelp: leave it out")))
+    Err(CommandFailure::usage(format!("`{name}` is for plans, and this is a scenario\nhelp: leave it out")))
 }
 
 /// Returns the Rust constant with the names and contents of files.

@@ -3,7 +3,7 @@
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 
-use super::cargo::Job;
+use super::cargo::PackageBuild;
 use super::messages::{CargoResult, Complaint, NO_LINKER};
 use super::target::Dependencies;
 use super::{LinkError, TargetCrate};
@@ -16,7 +16,7 @@ const LINKER: [&str; 2] = [NO_LINKER, "error: linking with `"];
 
 /// Returns the error that explains why a run of cargo ended without an executable.
 pub(super) fn fault(
-    job: &Job<'_>,
+    job: &PackageBuild<'_>,
     run: &CargoResult,
     target: &TargetCrate<'_>,
     dependencies: &Dependencies,
@@ -77,7 +77,7 @@ fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
 /// Returns the error for a run in which cargo did not begin to compile, or in which a crate that mdlec did not emit
 /// does not compile.
 fn others(
-    job: &Job<'_>,
+    job: &PackageBuild<'_>,
     run: &CargoResult,
     target: &TargetCrate<'_>,
     text: &str,

@@ -4,7 +4,7 @@
 use std::os::unix::process::ExitStatusExt;
 
 use super::cache::remove;
-use super::cargo::Job;
+use super::cargo::PackageBuild;
 use super::messages::{CargoResult, Complaint, NO_LINKER};
 use super::plan_package::PlanPackage;
 use super::{BuildStep, LinkError, TargetCrate, build_record};
@@ -44,7 +44,7 @@ pub(super) enum Damage {
 }
 
 /// Returns the part of the cache that is damaged according to a run of cargo; `None` if there is no sign of damage.
-pub(super) fn found(job: &Job<'_>, run: &CargoResult, target: &TargetCrate<'_>) -> Option<Damage> {
+pub(super) fn found(job: &PackageBuild<'_>, run: &CargoResult, target: &TargetCrate<'_>) -> Option<Damage> {
     if run.status.success() {
         let stored = run.executable.as_ref().filter(|executable| executable.fresh)?;
         return (!build_record::fits(job.plan, &stored.path)).then_some(Damage::Executable);
@@ -83,7 +83,11 @@ fn is_forgotten(complaint: &Complaint, target: &TargetCrate<'_>) -> bool {
 }
 
 /// Removes the damaged part, so that the next run of cargo builds it again.
-pub(super) fn clear(damage: Damage, job: &Job<'_>, progress: &mut dyn FnMut(BuildStep)) -> Result<(), LinkError> {
+pub(super) fn clear(
+    damage: Damage,
+    job: &PackageBuild<'_>,
+    progress: &mut dyn FnMut(BuildStep),
+) -> Result<(), LinkError> {
     match damage {
         Damage::Executable => job.clean(),
         Damage::Libraries => {

@@ -5,7 +5,7 @@ use std::env;
 use std::ffi::OsString;
 use std::process::{Command, Stdio};
 
-use super::guard::Guard;
+use super::guard::GroupGuard;
 use super::machine::BuildMachine;
 use super::messages::{self, CargoResult};
 use super::plan_package::PlanPackage;
@@ -36,13 +36,13 @@ const PROFILE: [&str; 13] = [
 
 /// A build of the package of a plan.
 #[derive(Debug)]
-pub(super) struct Job<'a> {
+pub(super) struct PackageBuild<'a> {
     pub(super) cache: &'a Cache,
     pub(super) machine: &'a BuildMachine,
     pub(super) plan: &'a PlanPackage,
 }
 
-impl Job<'_> {
+impl PackageBuild<'_> {
     /// Builds the package, without the network if possible.
     pub(super) fn build(&self, seal: &mut Seal, progress: &mut dyn FnMut(BuildStep)) -> Result<CargoResult, LinkError> {
         let run = self.attempt(false, seal, progress)?;
@@ -69,7 +69,7 @@ impl Job<'_> {
             command.arg("--offline");
         }
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let guard = Guard::start().map_err(|error| unusable("sh", &error))?;
+        let guard = GroupGuard::start().map_err(|error| unusable("sh", &error))?;
         let (child, _watched) = cleanup::spawn(&mut command, &guard).map_err(|error| unusable("cargo", &error))?;
         messages::follow(child, online, &self.plan.manifest(), seal, progress)
             .map_err(|error| unusable("cargo", &error))

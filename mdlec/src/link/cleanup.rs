@@ -12,14 +12,14 @@ use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, wa
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 
-use super::guard::Guard;
+use super::guard::GroupGuard;
 
 /// Child processes and files that are cleaned up when a signal arrives.
-static UNFINISHED: Mutex<Vec<Unfinished>> = Mutex::new(Vec::new());
+static UNFINISHED: Mutex<Vec<CleanupTask>> = Mutex::new(Vec::new());
 
 /// A child process to terminate, or a file to remove, when a signal arrives.
 #[derive(Debug, Clone, PartialEq, Eq)]
-enum Unfinished {
+enum CleanupTask {
     /// A child process, with the process group of its guard.
     Child { process: Pid, group: Pid },
     /// A file that is not complete yet.
@@ -52,11 +52,11 @@ fn end(signal: i32, farewell: impl FnOnce()) {
     for what in unfinished.iter() {
         match what {
             // An error means that the process has already ended or the file no longer exists.
-            Unfinished::Child { process, group } => {
+            CleanupTask::Child { process, group } => {
                 let _ = kill_process_group(*group, Signal::TERM);
                 let _ = waitid(WaitId::Pid(*process), WaitIdOptions::EXITED | WaitIdOptions::NOWAIT);
             }
-            Unfinished::File(path) => {
+            CleanupTask::File(path) => {
                 let _ = fs::remove_file(path);
             }
         }
@@ -67,7 +67,7 @@ fn end(signal: i32, farewell: impl FnOnce()) {
 
 /// An entry of the list `UNFINISHED`. The entry is removed from the list when this value is dropped.
 #[derive(Debug)]
-pub(super) struct UnfinishedEntry(Unfinished);
+pub(super) struct UnfinishedEntry(CleanupTask);
 
 impl Drop for UnfinishedEntry {
     fn drop(&mut self) {
@@ -76,11 +76,11 @@ impl Drop for UnfinishedEntry {
 }
 
 /// Starts a child process in the group of `guard`; a signal ends it together with all its children.
-pub(super) fn spawn(command: &mut Command, guard: &Guard) -> io::Result<(Child, UnfinishedEntry)> {
+pub(super) fn spawn(command: &mut Command, guard: &GroupGuard) -> io::Result<(Child, UnfinishedEntry)> {
     let mut unfinished = list();
     let group = guard.group();
     let child = command.process_group(group.as_raw_nonzero().get()).spawn()?;
-    let entry = Unfinished::Child { process: Pid::from_child(&child), group };
+    let entry = CleanupTask::Child { process: Pid::from_child(&child), group };
     unfinished.push(entry.clone());
     Ok((child, UnfinishedEntry(entry)))
 }
@@ -90,13 +90,13 @@ pub(super) fn spawn(command: &mut Command, guard: &Guard) -> io::Result<(Child, 
 pub(super) fn create(path: &Path) -> io::Result<(File, UnfinishedEntry)> {
     let mut unfinished = list();
     let file = File::create_new(path)?;
-    let path = Unfinished::File(path.to_owned());
+    let path = CleanupTask::File(path.to_owned());
     unfinished.push(path.clone());
     Ok((file, UnfinishedEntry(path)))
 }
 
 /// Locks the list. The list is valid even if another thread panicked while holding the lock.
-fn list() -> MutexGuard<'static, Vec<Unfinished>> {
+fn list() -> MutexGuard<'static, Vec<CleanupTask>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

@@ -14,9 +14,9 @@ const PROGRAM: &str = "trap '' HUP INT QUIT TERM; read line; kill -KILL 0";
 
 /// A shell that leads a process group. It kills the group if this process ends before the guard is dropped.
 #[derive(Debug)]
-pub(super) struct Guard(Child);
+pub(super) struct GroupGuard(Child);
 
-impl Guard {
+impl GroupGuard {
     /// Starts the shell in a process group of its own.
     pub(super) fn start() -> io::Result<Self> {
         let mut shell = Command::new(SHELL);
@@ -30,7 +30,7 @@ impl Guard {
     }
 }
 
-impl Drop for Guard {
+impl Drop for GroupGuard {
     fn drop(&mut self) {
         // Only the shell is killed. Background processes that cargo left running on purpose, such as a compiler cache,
         // continue.
@@ -44,15 +44,15 @@ mod tests {
     use std::os::unix::process::{CommandExt, ExitStatusExt};
     use std::process::{Child, Command};
 
-    use super::Guard;
+    use super::GroupGuard;
 
-    fn sleep(guard: &Guard) -> Child {
+    fn sleep(guard: &GroupGuard) -> Child {
         Command::new("sleep").arg("20").process_group(guard.group().as_raw_nonzero().get()).spawn().unwrap()
     }
 
     #[test]
     fn the_group_ends_with_the_input_of_its_guard() {
-        let mut guard = Guard::start().unwrap();
+        let mut guard = GroupGuard::start().unwrap();
         let mut child = sleep(&guard);
         // The same happens when this process is killed: the system closes the pipe.
         drop(guard.0.stdin.take());
@@ -61,7 +61,7 @@ mod tests {
 
     #[test]
     fn the_group_goes_on_when_the_guard_is_dropped() {
-        let guard = Guard::start().unwrap();
+        let guard = GroupGuard::start().unwrap();
         let mut child = sleep(&guard);
         drop(guard);
         assert_eq!(child.try_wait().unwrap(), None);

@@ -35,7 +35,7 @@ pub(super) struct CargoResult {
     /// `true` if cargo used at least one crate that an earlier run had compiled.
     pub(super) reused: bool,
     /// Executable of the plan; `None` if cargo reported none.
-    pub(super) executable: Option<Executable>,
+    pub(super) executable: Option<CachedExecutable>,
     /// Messages of rustc, warnings included, in order.
     pub(super) complaints: Vec<Complaint>,
     /// Standard error of cargo.
@@ -44,7 +44,7 @@ pub(super) struct CargoResult {
 
 /// An executable in the cache.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Executable {
+pub(super) struct CachedExecutable {
     pub(super) path: PathBuf,
     /// `true` if the executable existed before the run.
     pub(super) fresh: bool,
@@ -123,7 +123,7 @@ pub(super) fn follow(
     };
     thread::spawn(move || each_line(stdout, |line| sender.send(CargoLine::Message(line.to_owned())).is_ok()));
     let mut log =
-        Log { plan, seal, executable: None, complaints: Vec::new(), artifacts: 0, reused: false, compiled: 0 };
+        CargoOutput { plan, seal, executable: None, complaints: Vec::new(), artifacts: 0, reused: false, compiled: 0 };
     for heard in heard {
         match heard {
             CargoLine::Blocked => progress(BuildStep::Blocked),
@@ -138,7 +138,7 @@ pub(super) fn follow(
     let status = child.wait()?;
     let stderr = stderr.join().unwrap_or_default();
     let began = log.artifacts > 0 || !log.complaints.is_empty();
-    let Log { reused, executable, complaints, .. } = log;
+    let CargoOutput { reused, executable, complaints, .. } = log;
     Ok(CargoResult { status, online, began, reused, executable, complaints, stderr })
 }
 
@@ -154,24 +154,24 @@ fn each_line(lines: Option<impl Read>, mut take: impl FnMut(&[u8]) -> bool) {
 }
 
 /// The output of cargo read so far.
-struct Log<'a> {
+struct CargoOutput<'a> {
     plan: &'a Path,
     seal: &'a mut Seal,
-    executable: Option<Executable>,
+    executable: Option<CachedExecutable>,
     complaints: Vec<Complaint>,
     artifacts: usize,
     reused: bool,
     compiled: usize,
 }
 
-impl Log<'_> {
+impl CargoOutput<'_> {
     fn take(&mut self, line: CargoMessage, progress: &mut dyn FnMut(BuildStep)) {
         match line {
             CargoMessage::Artifact { manifest_path, target, filenames, executable, fresh } => {
                 self.artifacts += 1;
                 self.reused |= fresh;
                 if manifest_path == self.plan {
-                    self.executable = executable.map(|path| Executable { path, fresh });
+                    self.executable = executable.map(|path| CachedExecutable { path, fresh });
                     return;
                 }
                 let is_script = target.kind.iter().any(|kind| kind == "custom-build");
@@ -202,7 +202,7 @@ enum CargoMessage {
     #[serde(rename = "compiler-artifact")]
     Artifact {
         manifest_path: PathBuf,
-        target: Target,
+        target: CompiledCrate,
         filenames: Vec<PathBuf>,
         executable: Option<PathBuf>,
         fresh: bool,
@@ -217,7 +217,7 @@ enum CargoMessage {
 
 /// A compiled crate.
 #[derive(Debug, Deserialize)]
-struct Target {
+struct CompiledCrate {
     kind: Vec<String>,
 }
 

@@ -61,12 +61,12 @@ pub use progress::BuildStep;
 pub use sources::{emulators, known};
 pub use target::TargetCrate;
 
-use cargo::Job;
+use cargo::PackageBuild;
 use machine::BuildMachine;
-use messages::{CargoResult, Executable};
-use output::Destination;
+use messages::{CachedExecutable, CargoResult};
+use output::OutputFile;
 use seal::Seal;
-use sources::Sources;
+use sources::SourcesCopy;
 use target::Dependencies;
 use toolchain::Toolchain;
 
@@ -121,19 +121,19 @@ pub fn build(
     output: &Path,
     progress: &mut dyn FnMut(BuildStep),
 ) -> Result<Built, LinkError> {
-    let destination = Destination::check(output, package.inputs)?;
+    let destination = OutputFile::check(output, package.inputs)?;
     package.target.must_not_lose(output)?;
     let locked = cache.lock(progress)?;
     let toolchain = Toolchain::find()?;
     let machine = BuildMachine::find(package.machine, &toolchain.host)?;
-    let sources = Sources::unpack(cache)?;
+    let sources = SourcesCopy::unpack(cache)?;
     let dependencies = match package.entry {
         Entry::Plan(_) => target::dependencies(package.target, &sources)?,
         Entry::Scenario => target::scenario_dependencies(&sources),
     };
     let plan = package::write(cache, package, &dependencies, &toolchain, &machine)?;
     superseded::remove_before(cache, package.plan_file, &machine, &plan)?;
-    let job = Job { cache, machine: &machine, plan: &plan };
+    let job = PackageBuild { cache, machine: &machine, plan: &plan };
     let executable = make(&job, package.target, &dependencies, progress)?;
     let size = destination.copy(&executable.path)?;
     // The lock is held until here, because another build of this plan would overwrite the executable.
@@ -158,11 +158,11 @@ pub struct Emulator {
 pub fn emulator(cache: &Cache, robot: &str, progress: &mut dyn FnMut(BuildStep)) -> Result<Emulator, LinkError> {
     let locked = cache.lock(progress)?;
     let machine = BuildMachine::host(&Toolchain::find()?.host);
-    let sources = Sources::unpack(cache)?;
+    let sources = SourcesCopy::unpack(cache)?;
     let dependencies = target::emulator_dependencies(robot, &sources)?;
     let crate_name: String = dependencies.packages.iter().map(|(package, _)| package.replace('-', "_")).collect();
     let package = package::write_emulator(cache, robot, &crate_name, &dependencies)?;
-    let job = Job { cache, machine: &machine, plan: &package };
+    let job = PackageBuild { cache, machine: &machine, plan: &package };
     let target = TargetCrate::Builtin { name: robot, crate_name: &crate_name };
     let executable = make(&job, &target, &dependencies, progress)?;
     Ok(Emulator { path: executable.path, _locked: locked })
@@ -170,11 +170,11 @@ pub fn emulator(cache: &Cache, robot: &str, progress: &mut dyn FnMut(BuildStep))
 
 /// Builds the executable of a package in the cache.
 fn make(
-    job: &Job<'_>,
+    job: &PackageBuild<'_>,
     target: &TargetCrate<'_>,
     dependencies: &Dependencies,
     progress: &mut dyn FnMut(BuildStep),
-) -> Result<Executable, LinkError> {
+) -> Result<CachedExecutable, LinkError> {
     let run = run(job, target, progress)?;
     match &run.executable {
         Some(executable) if run.status.success() => {
@@ -186,7 +186,11 @@ fn make(
 }
 
 /// Runs cargo. If the result shows damage in the cache, removes the damaged part and runs cargo again.
-fn run(job: &Job<'_>, target: &TargetCrate<'_>, progress: &mut dyn FnMut(BuildStep)) -> Result<CargoResult, LinkError> {
+fn run(
+    job: &PackageBuild<'_>,
+    target: &TargetCrate<'_>,
+    progress: &mut dyn FnMut(BuildStep),
+) -> Result<CargoResult, LinkError> {
     let mut mended = Vec::new();
     let mut seal = Seal::check(job.cache, progress)?;
     loop {

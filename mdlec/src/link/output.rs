@@ -16,7 +16,7 @@ use super::{LinkError, cleanup};
 /// # Errors
 /// Fails if `output` is a folder, is one of `inputs`, or cannot be written.
 pub fn write_whole(output: &Path, bytes: &[u8], inputs: &[PathBuf]) -> Result<(), LinkError> {
-    match Destination::check(output, inputs) {
+    match OutputFile::check(output, inputs) {
         Ok(destination) => destination.put(|new| {
             if let Ok(old) = fs::metadata(&destination.path) {
                 new.set_permissions(old.permissions())?;
@@ -43,14 +43,14 @@ pub fn must_not_be_read(output: &Path, inputs: &[PathBuf]) -> Result<(), LinkErr
 
 /// A file that can be created or overwritten by a build.
 #[derive(Debug)]
-pub(super) struct Destination {
+pub(super) struct OutputFile {
     /// Path as the caller wrote it.
     shown: PathBuf,
     /// Path with symbolic links resolved, because a rename to a link would replace the link.
     path: PathBuf,
 }
 
-impl Destination {
+impl OutputFile {
     /// Checks before the build that a file can be written to `output`, which must not be one of `inputs`.
     pub(super) fn check(output: &Path, inputs: &[PathBuf]) -> Result<Self, LinkError> {
         let shown = output.to_owned();
@@ -121,12 +121,12 @@ mod tests {
 
     use super::super::LinkError;
     use super::super::tests::folder;
-    use super::{Destination, write_whole};
+    use super::{OutputFile, write_whole};
 
     #[test]
     fn a_place_that_is_no_file_is_refused_before_the_build() {
         let folder = folder("refused");
-        let check = |output: &Path| Destination::check(output, &[folder.join("nap.mdle")]).unwrap_err();
+        let check = |output: &Path| OutputFile::check(output, &[folder.join("nap.mdle")]).unwrap_err();
         fs::write(folder.join("nap.mdle"), "").unwrap();
         assert!(matches!(check(&folder), LinkError::OutputIsFolder(_)));
         assert!(matches!(check(&folder.join("none/nap")), LinkError::OutputFolderMissing(_)));
@@ -141,12 +141,12 @@ mod tests {
     fn only_the_whole_file_appears() {
         let folder = folder("whole");
         let output = folder.join("nap");
-        Destination::check(&output, &[]).unwrap();
+        OutputFile::check(&output, &[]).unwrap();
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
         write_whole(&output, b"one", &[]).unwrap();
         write_whole(&output, b"two", &[]).unwrap();
         assert_eq!(fs::read(&output).unwrap(), b"two");
-        let destination = Destination::check(&output, &[]).unwrap();
+        let destination = OutputFile::check(&output, &[]).unwrap();
         destination.copy(&folder.join("missing")).unwrap_err();
         assert_eq!(fs::read(&output).unwrap(), b"two");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);

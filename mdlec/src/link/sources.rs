@@ -5,7 +5,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use mdle_files::Known;
+use mdle_files::KnownSettings;
 
 use super::cache::{remove, write_if_changed};
 use super::{Cache, LinkError};
@@ -51,8 +51,8 @@ fn worlds(target: &str) -> impl Iterator<Item = &'static str> {
 }
 
 /// Returns the worlds and options of a target that are known before a run. They are not known for a third-party target.
-pub fn known(target: &str) -> Known {
-    Known { worlds: worlds(target).collect(), options: options(target) }
+pub fn known(target: &str) -> KnownSettings {
+    KnownSettings { worlds: worlds(target).collect(), options: options(target) }
 }
 
 /// Returns the options of the executables for a built-in target, each with the placeholder of its value (empty
@@ -78,12 +78,12 @@ pub(super) fn text(name: &str) -> &'static str {
 
 /// Copy of the sources in the cache.
 #[derive(Debug)]
-pub(super) struct Sources {
+pub(super) struct SourcesCopy {
     /// Folder of the copy.
     pub(super) folder: PathBuf,
 }
 
-impl Sources {
+impl SourcesCopy {
     /// Writes the files that are missing in the cache, and those that differ from the packed files.
     ///
     /// Unchanged files keep their times, by which cargo recognizes what it has built. The cache must be locked.
@@ -157,7 +157,7 @@ mod tests {
     use super::super::tests::cache;
     use mdle_compiler::builtin::alphabets;
 
-    use super::{FORGOTTEN, Sources, builtin, embedded, text};
+    use super::{FORGOTTEN, SourcesCopy, builtin, embedded, text};
 
     #[test]
     fn alphabets_come_with_names_that_can_be_shown() {
@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn a_damaged_copy_is_mended_and_the_rest_left_alone() {
         let cache = cache("damaged");
-        let folder = Sources::unpack(&cache).unwrap().folder;
+        let folder = SourcesCopy::unpack(&cache).unwrap().folder;
         let time = |name: &str| fs::metadata(folder.join(name)).unwrap().modified().unwrap();
         let before = time("Cargo.toml");
         fs::remove_file(folder.join("atoms/Cargo.toml")).unwrap();
@@ -219,7 +219,7 @@ mod tests {
     #[test]
     fn a_file_where_a_folder_has_to_be_gives_way() {
         let cache = cache("in_the_way");
-        let folder = Sources::unpack(&cache).unwrap().folder;
+        let folder = SourcesCopy::unpack(&cache).unwrap().folder;
         fs::remove_dir_all(folder.join("atoms/src")).unwrap();
         fs::write(folder.join("atoms/src"), "garbage").unwrap();
         assert_unpacked(&cache);
@@ -241,7 +241,7 @@ mod tests {
             let names = fs::read_dir(cache.folder()).unwrap().map(|found| found.unwrap().file_name());
             names.map(|name| name.into_string().unwrap()).collect::<BTreeSet<_>>()
         };
-        let new = Sources::unpack(&cache).unwrap().folder;
+        let new = SourcesCopy::unpack(&cache).unwrap().folder;
         let name = new.file_name().unwrap().to_str().unwrap();
         let fill = || {
             folder("src-0.0.1-0123456789ab", 31);
@@ -251,22 +251,22 @@ mod tests {
         };
         fill();
         folder(name, 31);
-        Sources::unpack(&cache).unwrap();
+        SourcesCopy::unpack(&cache).unwrap();
         assert_eq!(names().len(), 5, "nothing goes while the same version is used");
         assert!(fs::metadata(&new).unwrap().modified().unwrap().elapsed().unwrap() < FORGOTTEN);
 
         fs::remove_dir_all(&new).unwrap();
-        Sources::unpack(&cache).unwrap();
+        SourcesCopy::unpack(&cache).unwrap();
         assert_eq!(names(), BTreeSet::from(["src-0.0.2-0123456789ab".to_owned(), name.to_owned()]));
         fill();
         fs::remove_dir_all(cache.folder().join("src-0.0.1-0123456789ab")).unwrap();
         fs::remove_dir_all(&new).unwrap();
-        Sources::unpack(&cache).unwrap();
+        SourcesCopy::unpack(&cache).unwrap();
         assert_eq!(names().len(), 4, "what was compiled stays with a version that may be used");
     }
 
     fn assert_unpacked(cache: &Cache) {
-        let folder = Sources::unpack(cache).unwrap().folder;
+        let folder = SourcesCopy::unpack(cache).unwrap().folder;
         for (name, contents) in embedded::FILES {
             assert_eq!(fs::read(folder.join(name)).unwrap(), *contents, "{name}");
         }

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::sources::{self, SHARED, Sources};
+use super::sources::{self, SHARED, SourcesCopy};
 use super::{LinkError, toolchain};
 
 /// Crate of a robot, which implements `mdle_host::Target` for a type that its root exports as `Target`.
@@ -75,7 +75,7 @@ pub(super) struct Dependencies {
 }
 
 /// Returns the dependencies of a plan for `target`.
-pub(super) fn dependencies(target: &TargetCrate<'_>, sources: &Sources) -> Result<Dependencies, LinkError> {
+pub(super) fn dependencies(target: &TargetCrate<'_>, sources: &SourcesCopy) -> Result<Dependencies, LinkError> {
     match target {
         TargetCrate::Builtin { name, crate_name } => builtin(name, crate_name, sources),
         TargetCrate::Path { folder, crate_name } => by_path(folder, crate_name, sources),
@@ -83,7 +83,7 @@ pub(super) fn dependencies(target: &TargetCrate<'_>, sources: &Sources) -> Resul
 }
 
 /// Returns the dependencies of a built-in target, all from the unpacked sources.
-fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
+fn builtin(name: &str, crate_name: &str, sources: &SourcesCopy) -> Result<Dependencies, LinkError> {
     let (folder, package) = sources::builtin(name)
         .filter(|(_, package)| package.replace('-', "_") == crate_name)
         .ok_or_else(|| LinkError::NoSuchTarget(name.to_owned()))?;
@@ -104,7 +104,7 @@ fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependenci
 
 /// Returns the dependencies of a scenario: only the package that runs scenarios, which includes all robots and the
 /// compiler.
-pub(super) fn scenario_dependencies(sources: &Sources) -> Dependencies {
+pub(super) fn scenario_dependencies(sources: &SourcesCopy) -> Dependencies {
     let (name, folder) = sources::RUNNER;
     Dependencies {
         packages: vec![(name.to_owned(), sources.folder.join(folder))],
@@ -116,7 +116,7 @@ pub(super) fn scenario_dependencies(sources: &Sources) -> Dependencies {
 }
 
 /// Returns the dependencies of the emulator of `robot`.
-pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
+pub(super) fn emulator_dependencies(robot: &str, sources: &SourcesCopy) -> Result<Dependencies, LinkError> {
     let (folder, package) = sources::emulator(robot).ok_or_else(|| LinkError::NoSuchTarget(robot.to_owned()))?;
     Ok(Dependencies {
         packages: vec![(package.to_owned(), sources.folder.join(folder))],
@@ -128,7 +128,7 @@ pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<De
 }
 
 /// Returns the dependencies of a plan for a third-party target, as its manifest selects them.
-fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
+fn by_path(folder: &Path, crate_name: &str, sources: &SourcesCopy) -> Result<Dependencies, LinkError> {
     let manifest = folder.join("Cargo.toml").canonicalize().map_err(|_| LinkError::NotACrate(folder.to_owned()))?;
     let metadata = read(&manifest, crate_name)?;
     let own = metadata.packages.iter().find(|package| package.manifest_path == manifest);
@@ -250,12 +250,12 @@ mod tests {
     use std::fs;
 
     use super::super::tests::cache;
-    use super::{Dependency, Sources, TargetCrate, dependencies};
+    use super::{Dependency, SourcesCopy, TargetCrate, dependencies};
 
     #[test]
     fn what_a_target_has_by_path_the_plan_takes_from_there() {
         let cache = cache("by_path");
-        let sources = Sources::unpack(&cache).unwrap();
+        let sources = SourcesCopy::unpack(&cache).unwrap();
         let package = |folder: &str, manifest: &str| {
             let folder = cache.folder().join(folder);
             fs::create_dir_all(folder.join("src")).unwrap();

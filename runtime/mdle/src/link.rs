@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_engine::link::{Link, LinkSettings, StateLink, Tcp, TcpSettings};
-use mdle_files::Group;
+use mdle_files::RobotGroup;
 use mdle_host::Refusal;
 use mdle_runtime::Pose;
 
@@ -101,7 +101,7 @@ impl LinkFile {
     ///
     /// # Errors
     /// Fails if the robot is not in the group.
-    pub(crate) fn part(&self, group: &Group) -> Result<String, Failure> {
+    pub(crate) fn part(&self, group: &RobotGroup) -> Result<String, Failure> {
         let own = &self.link().name;
         group.plan_of(own).ok_or_else(|| {
             Failure::Usage(format!(

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use mdle_compiler::diagnostic::judged;
 use mdle_engine::Library;
-use mdle_files::{Input, InputError, Known, SafetyEntry, Settings, Target, read_plan};
+use mdle_files::{Input, InputError, KnownSettings, SafetyEntry, Settings, Target, read_plan};
 use mdle_host::{Call, Program, RecordedPlan};
 use mdle_runtime::Sensed;
 
@@ -65,7 +65,7 @@ pub(crate) fn run(
     let program = Program { plan: &plan, version: "" };
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
-    for option in settings.run_options(arguments.target.as_deref(), &given, |_| Known::default())? {
+    for option in settings.run_options(arguments.target.as_deref(), &given, |_| KnownSettings::default())? {
         let call = Call { words: arguments.words.clone(), options: option.arguments.clone(), ..no_call() };
         (linked.check)(program, &call).map_err(|text| option.refused(&text))?;
         options.extend(option.arguments);

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use std::time::Instant;
 
 use mdle_tests::chance::{Chance, repeated};
-use mdle_theory::theorem::{Answer, STEPS, State, decompile};
+use mdle_theory::theorem::{STEPS, State, TheoremResult, decompile};
 
 use super::definition::{Definition, assert_is_string};
 use super::machines::{Row, Table, likely, machine};
@@ -35,17 +35,17 @@ fn compare(atoms: usize, rows: &[Row], start: Option<usize>, count: &mut Count) 
     let answer = decompile(&machine, STEPS);
     count.machines += 1;
     match &answer {
-        Answer::String(found) => {
+        TheoremResult::String(found) => {
             assert!(expected, "{rows:?}: {found:?}");
             assert_is_string(&machine, found);
             count.strings += 1;
             count.with_loops += usize::from(!found.loops.is_empty());
         }
-        Answer::None(broken) => {
+        TheoremResult::None(broken) => {
             assert!(!expected, "{rows:?}: {broken:?}");
             assert!(!broken.is_empty(), "{rows:?}");
         }
-        Answer::Stopped(_) => panic!("{rows:?}: stopped"),
+        TheoremResult::Stopped(_) => panic!("{rows:?}: stopped"),
     }
 }
 

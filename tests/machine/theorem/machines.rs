@@ -2,7 +2,7 @@
 //! any.
 
 use mdle_tests::chance::Chance;
-use mdle_theory::theorem::{Machine, Named, State};
+use mdle_theory::theorem::{Machine, NamedInterrupt, State};
 
 /// A row: the destination to which an interrupt leads from each atom; `None` if it does not affect the atom.
 pub(crate) type Row = Vec<Option<usize>>;
@@ -43,7 +43,7 @@ pub(crate) fn machine(atoms: usize, rows: &[Row]) -> Machine {
     let state = |place: usize| State(u32::try_from(place).unwrap());
     let interrupts = (1..).zip(rows).map(|(number, row)| {
         let moves = row.iter().enumerate().filter_map(|(from, to)| Some((state(from), state((*to)?))));
-        (Named { name: format!("x{number}"), text: None }, moves.collect())
+        (NamedInterrupt { name: format!("x{number}"), text: None }, moves.collect())
     });
     Machine::new(states, interrupts.collect())
 }

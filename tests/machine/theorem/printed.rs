@@ -2,7 +2,7 @@
 //! of the states. Also tests where the printed conditions differ from the exact ones.
 
 use mdle_tests::chance::{Chance, repeated};
-use mdle_theory::theorem::{Answer, Machine, Named, STEPS, State, as_printed, decompile};
+use mdle_theory::theorem::{Machine, NamedInterrupt, STEPS, State, TheoremResult, as_printed, decompile};
 
 use super::machines::{Row, Table, likely, machine};
 
@@ -80,10 +80,10 @@ fn they_are_judged_in_the_one_numbering_in_which_they_can_hold() {
                 // In its literal wording, R4 forbids every forward transition.
                 assert!(rules.iter().any(|rule| rule.letter.is_some()), "{rows:?}: {rules:?}");
                 match exactly {
-                    Answer::String(found) if !meant => differ.push((atoms, rows, !found.loops.is_empty())),
+                    TheoremResult::String(found) if !meant => differ.push((atoms, rows, !found.loops.is_empty())),
                     // In their intended meaning, the conditions never accept a machine without a string.
-                    Answer::None(_) => assert!(!meant, "{rows:?}: {rules:?}"),
-                    Answer::String(_) | Answer::Stopped(_) => {}
+                    TheoremResult::None(_) => assert!(!meant, "{rows:?}: {rules:?}"),
+                    TheoremResult::String(_) | TheoremResult::Stopped(_) => {}
                 }
             }
         }
@@ -185,12 +185,12 @@ fn what_leads_back_is_judged_as_if_everything_were_looked_at() {
         let (atoms, interrupts) = (2 + chance.below(4), 2 + chance.below(4));
         let rows = likely(&mut chance, atoms, interrupts);
         let machine = machine(atoms, &rows);
-        let Answer::String(found) = decompile(&machine, STEPS) else { continue };
+        let TheoremResult::String(found) = decompile(&machine, STEPS) else { continue };
         // Only in these machines is the file's order that of the string, so that positions can be compared.
         if !leads_back(&rows) || !found.order.iter().map(|state| state.0).is_sorted() {
             continue;
         }
-        let rules = as_printed(&machine, &Answer::String(found));
+        let rules = as_printed(&machine, &TheoremResult::String(found));
         let [_, third] = sentences(atoms, &rows);
         seen[usize::from(third.is_some())] += 1;
         assert_eq!(rules[2].letter, third, "{rows:?}");
@@ -201,7 +201,7 @@ fn what_leads_back_is_judged_as_if_everything_were_looked_at() {
 #[test]
 fn large_machines_are_judged_in_time_with_their_moves() {
     const ATOMS: u32 = 30_000;
-    let named = |name: String| Named { name, text: None };
+    let named = |name: String| NamedInterrupt { name, text: None };
     let moves = |first: u32, last: u32| (first..last).map(|from| (State(from), State(last))).collect();
     // A scope encloses everything, others enclose a hundred atoms each, and others one atom each: a check of every pair
     // of transitions would take hours.

@@ -9,7 +9,7 @@ use mdle_compiler::syntax::{arena_for, parse};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::pipeline::{compile, compile_plan};
 use mdle_tests::random_plan::RandomPlan;
-use mdle_theory::theorem::{Answer, augment, decompile, read, string};
+use mdle_theory::theorem::{TheoremResult, augment, decompile, read, string};
 
 use super::definition::assert_is_string;
 use super::loops::plan_of_loops;
@@ -71,12 +71,12 @@ fn go_round(file: &FsmFile, chance: &mut Chance, what: &str, seen: &mut Seen) {
     let disordered = disordered(file, chance);
     let machine = read(&disordered.to_json()).unwrap_or_else(|error| panic!("{what}: {error:?}"));
     let found = match decompile(&machine, STEPS) {
-        Answer::String(found) => found,
-        Answer::Stopped(_) => {
+        TheoremResult::String(found) => found,
+        TheoremResult::Stopped(_) => {
             seen.stopped += 1;
             return;
         }
-        answer @ Answer::None(_) => panic!("{what}: {answer:?}"),
+        answer @ TheoremResult::None(_) => panic!("{what}: {answer:?}"),
     };
     assert_is_string(&machine, &found);
     assert_eq!(machine.states()[found.order[0].0 as usize], file.states[0], "{what}: the plan begins elsewhere");
@@ -190,7 +190,7 @@ fn texts_that_reach_further_are_refused_or_change_nothing() {
             refused += 1;
             continue;
         };
-        let Answer::String(found) = decompile(&machine, STEPS) else { panic!("{text:?}") };
+        let TheoremResult::String(found) = decompile(&machine, STEPS) else { panic!("{text:?}") };
         let printed = string(&machine, &found);
         for plan in [printed.clone(), augment(&machine)] {
             let (id, arena) = (SourceId(0), arena_for(&plan));

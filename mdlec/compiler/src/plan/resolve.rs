@@ -369,17 +369,19 @@ impl<'r, 'a> Resolver<'r, 'a> {
     fn count(&mut self, count: &Count) -> Option<u64> {
         let number = match count {
             Count::Infinity(_) => return None,
-            Count::Name(name) => match self.parameters.get(name.node).filter(|found| found.kind == Kind::Count) {
-                Some(Parameter { given: Some(Arg::Number(number)), .. }) => number,
-                Some(Parameter { given: Some(Arg::Infinity(_)), .. }) => return None,
-                // Until the plan is used, the parameter has no argument; any count is valid.
-                Some(_) => return Some(1),
-                None if self.parameters.is_untyped(name.node) => return Some(1),
-                None => {
-                    self.found.push(parameters::no_count(*name, &self.parameters));
-                    return Some(1);
+            Count::Name(name) => {
+                match self.parameters.get(name.node).filter(|found| found.kind == Kind::Count) {
+                    Some(Parameter { given: Some(Arg::Number(number)), .. }) => number,
+                    Some(Parameter { given: Some(Arg::Infinity(_)), .. }) => return None,
+                    // Until the plan is used, the parameter has no argument; any count is valid.
+                    Some(_) => return Some(1),
+                    None if self.parameters.is_untyped(name.node) => return Some(1),
+                    None => {
+                        self.found.push(parameters::no_count(*name, &self.parameters));
+                        return Some(1);
+                    }
                 }
-            },
+            }
             Count::Number(number) => number,
         };
         let whole = Decimal::parse(number.digits()).filter(Decimal::is_whole).filter(|_| number.unit().is_none());

@@ -78,7 +78,7 @@ pub(super) struct SettingsError {
 /// # Errors
 /// Fails at the first entry that is not TOML, has an unknown key, or has a value of the wrong type.
 pub(super) fn read(text: &str) -> Result<SettingsText, SettingsError> {
-    let reading = Reading(text);
+    let reading = SettingsReader(text);
     let table = DeTable::parse(text).map_err(|error| {
         let message = error.message().replace('\n', " ");
         SettingsError { line: reading.line(&error.span().unwrap_or_default()), message }
@@ -116,9 +116,9 @@ fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t Key<'i>, &'t Spanned<DeV
 type Key<'i> = Spanned<std::borrow::Cow<'i, str>>;
 
 /// Reader of the text of an `mdle.toml`.
-struct Reading<'t>(&'t str);
+struct SettingsReader<'t>(&'t str);
 
-impl Reading<'_> {
+impl SettingsReader<'_> {
     /// Reads a value that must be text; `example` is a valid entry for the error message.
     fn text(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>, example: &str) -> Result<Setting, SettingsError> {
         let found = value.get_ref();

@@ -29,18 +29,18 @@ pub fn matrix_files<'t, 'p>(terms: &'t Terms<'p>) -> Result<MatrixFiles<'t, 'p>,
 
 /// List of the matrices.
 #[derive(Debug, Serialize)]
-struct List<'t> {
+struct MatrixList<'t> {
     version: u32,
     source: &'t str,
     combined: bool,
     states: Vec<String>,
     laws: &'t [&'t str],
-    matrices: Vec<Entry<'t>>,
-    never: Vec<Entry<'t>>,
+    matrices: Vec<MatrixEntry<'t>>,
+    never: Vec<MatrixEntry<'t>>,
 }
 
 #[derive(Debug, Serialize)]
-struct Entry<'t> {
+struct MatrixEntry<'t> {
     name: &'t str,
     text: &'t str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -70,7 +70,7 @@ impl MatrixFiles<'_, '_> {
     #[must_use]
     pub fn list(&self) -> String {
         let states = (1..self.0.states()).map(|atom| format!("a{atom}")).chain(["end".to_owned()]);
-        let list = List {
+        let list = MatrixList {
             version: VERSION,
             source: self.0.source,
             combined: self.0.combined,
@@ -100,12 +100,12 @@ fn file_name(term: &Term<'_>) -> String {
     format!("{}.mtx", term.name)
 }
 
-fn entry<'t>(term: &'t Term<'_>, file: Option<String>) -> Entry<'t> {
+fn entry<'t>(term: &'t Term<'_>, file: Option<String>) -> MatrixEntry<'t> {
     let listed = |place: &Extent<'t>| {
         let Extent { number, scope, first, last, row: _ } = *place;
         ScopeStates { number, scope, first: first + 1, last: last + 1 }
     };
-    Entry { name: &term.name, text: term.text, file, places: term.places.iter().map(listed).collect() }
+    MatrixEntry { name: &term.name, text: term.text, file, places: term.places.iter().map(listed).collect() }
 }
 
 /// Returns a text on one line, shortened to the maximum length of a comment.

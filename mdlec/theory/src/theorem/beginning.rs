@@ -6,11 +6,11 @@
 
 mod fits;
 
-use super::{Broken, InterruptId, Loop, Machine, Run, State, Stretch};
+use super::{Broken, InterruptId, Loop, Machine, ScopeRun, State, Stretch};
 
 /// A scope that has not ended: an interrupt that leads to the state `to` from each position of the order since `first`.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Open {
+pub(super) struct OpenScope {
     interrupt: InterruptId,
     first: usize,
     to: State,
@@ -19,11 +19,11 @@ pub(super) struct Open {
 /// Scopes and loops that end between two states.
 #[derive(Default)]
 pub(super) struct Boundary {
-    runs: Vec<Run>,
+    runs: Vec<ScopeRun>,
     /// First positions of the loops that end at the boundary, in ascending order.
     loops: Vec<usize>,
     /// Scopes that continue after the boundary.
-    open: Vec<Open>,
+    open: Vec<OpenScope>,
     /// First position of the widest scope or loop that ends at the boundary; `None` if none ends.
     widest: Option<usize>,
 }
@@ -45,7 +45,7 @@ pub(super) struct Beginning<'m> {
     places: Vec<Option<usize>>,
     /// States that lead to each state.
     sources: Vec<Vec<State>>,
-    pub(super) runs: Vec<Run>,
+    pub(super) runs: Vec<ScopeRun>,
     pub(super) loops: Vec<Loop>,
     /// First and last position of each closed range that is not inside another closed range.
     wholes: Vec<(usize, usize)>,
@@ -86,7 +86,12 @@ impl<'m> Beginning<'m> {
     ///
     /// # Errors
     /// Returns the condition that `next` breaks.
-    pub(super) fn ending(&self, open: &[Open], next: State, extra: Option<usize>) -> Result<Option<Boundary>, Broken> {
+    pub(super) fn ending(
+        &self,
+        open: &[OpenScope],
+        next: State,
+        extra: Option<usize>,
+    ) -> Result<Option<Boundary>, Broken> {
         let Some(here) = self.order.len().checked_sub(1) else {
             return Ok(extra.is_none().then(Boundary::default));
         };
@@ -114,7 +119,7 @@ impl<'m> Beginning<'m> {
 
     /// Returns `true` if a scope would end before `next` although its interrupt also leads to `next` from other states,
     /// which have no position yet.
-    pub(super) fn ends_too_early(&self, open: &[Open], next: State) -> bool {
+    pub(super) fn ends_too_early(&self, open: &[OpenScope], next: State) -> bool {
         let mut ending = open.iter().filter(|run| run.to == next && self.completed != Some(run.interrupt));
         ending.any(|run| {
             let mut others = self.outside(next).filter(|source| *source != next);
@@ -124,7 +129,7 @@ impl<'m> Beginning<'m> {
 
     /// Returns `true` if an open scope must end if `next` follows. Returns the broken condition if the scope can
     /// neither end nor continue.
-    fn must_end(&self, run: Open, next: State) -> Result<bool, Broken> {
+    fn must_end(&self, run: OpenScope, next: State) -> Result<bool, Broken> {
         if run.to == next {
             return Ok(true);
         }
@@ -139,13 +144,13 @@ impl<'m> Beginning<'m> {
     }
 
     /// Returns the first position of an ending scope or, if the scope leads back, of the loop to whose start it leads.
-    fn reach(&self, run: Open, next: State) -> usize {
+    fn reach(&self, run: OpenScope, next: State) -> usize {
         if run.to == next { run.first } else { self.place(run.to).unwrap_or(run.first) }
     }
 
     /// Marks every scope that begins inside an ending scope as ending too. Returns the broken condition if such a scope
     /// cannot end.
-    fn spread(&self, open: &[Open], next: State, ends: &mut [bool], widest: &mut usize) -> Result<(), Broken> {
+    fn spread(&self, open: &[OpenScope], next: State, ends: &mut [bool], widest: &mut usize) -> Result<(), Broken> {
         for (run, ends) in open.iter().zip(ends).rev() {
             if run.first <= *widest {
                 break;
@@ -161,7 +166,7 @@ impl<'m> Beginning<'m> {
 
     /// Returns the condition that is broken if the scope `run` continues although a scope that encloses its first state
     /// ends.
-    fn crossing(&self, run: Open, open: &[Open], widest: usize, next: State) -> Broken {
+    fn crossing(&self, run: OpenScope, open: &[OpenScope], widest: usize, next: State) -> Broken {
         let around = open.iter().find(|around| around.first == widest || self.place(around.to) == Some(widest));
         let [.., here] = *self.order.as_slice() else { return Broken::NoExit(next) };
         Broken::Crosses {
@@ -175,7 +180,7 @@ impl<'m> Beginning<'m> {
 
     /// Returns the boundary at which the scopes marked in `ends` end, or the condition that is broken if they end
     /// there.
-    fn ended(&self, open: &[Open], next: State, ends: &[bool], widest: usize) -> Result<Boundary, Broken> {
+    fn ended(&self, open: &[OpenScope], next: State, ends: &[bool], widest: usize) -> Result<Boundary, Broken> {
         let here = self.order.len() - 1;
         let mut ending = Boundary { widest: Some(widest), ..Boundary::default() };
         for (run, ends) in open.iter().zip(ends) {
@@ -187,7 +192,7 @@ impl<'m> Beginning<'m> {
             if to <= here {
                 ending.loops.push(to);
             }
-            ending.runs.push(Run { interrupt: run.interrupt, first: run.first, last: here, to });
+            ending.runs.push(ScopeRun { interrupt: run.interrupt, first: run.first, last: here, to });
         }
         ending.loops.sort_unstable();
         ending.loops.dedup();
@@ -200,7 +205,7 @@ impl<'m> Beginning<'m> {
     }
 
     /// Appends a state; returns the scopes that are open at this state, and the data for undoing this step.
-    pub(super) fn fill(&mut self, ending: Boundary, next: State) -> (Vec<Open>, Before) {
+    pub(super) fn fill(&mut self, ending: Boundary, next: State) -> (Vec<OpenScope>, Before) {
         let place = self.order.len();
         let mut before = Before { runs: self.runs.len(), loops: self.loops.len(), ..Before::default() };
         if let (Some(widest), Some(last)) = (ending.widest, place.checked_sub(1)) {
@@ -217,14 +222,14 @@ impl<'m> Beginning<'m> {
         let mut going: Vec<_> = open.iter().map(|run| run.interrupt).collect();
         going.sort_unstable();
         let begun = self.machine.exits(next).iter().filter(|exit| going.binary_search(&exit.interrupt).is_err());
-        open.extend(begun.map(|exit| Open { interrupt: exit.interrupt, first: place, to: exit.to }));
+        open.extend(begun.map(|exit| OpenScope { interrupt: exit.interrupt, first: place, to: exit.to }));
         (open, before)
     }
 
     /// Returns a hash of all data that determine which states can follow: the states that have a position, the first
     /// states of the closed ranges, the open scopes, and the last state. The order inside a closed range has no effect
     /// any longer.
-    pub(super) fn outline(&self, open: &[Open]) -> [u8; 32] {
+    pub(super) fn outline(&self, open: &[OpenScope]) -> [u8; 32] {
         let mut placed = vec![0_u8; self.places.len().div_ceil(8)];
         for state in &self.order {
             placed[state.0 as usize / 8] |= 1 << (state.0 % 8);

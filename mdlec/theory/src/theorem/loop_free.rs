@@ -4,7 +4,7 @@
 use std::cmp::Reverse;
 
 use super::order::places;
-use super::{Broken, InterruptId, Machine, Run, State, Stretch};
+use super::{Broken, InterruptId, Machine, ScopeRun, State, Stretch};
 
 /// Returns the scopes of all interrupts. In `order`, all interrupts must lead forwards.
 ///
@@ -12,7 +12,7 @@ use super::{Broken, InterruptId, Machine, Run, State, Stretch};
 ///
 /// # Errors
 /// Returns all conditions that the machine breaks.
-pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<Run>, Vec<Broken>> {
+pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<ScopeRun>, Vec<Broken>> {
     let mut broken = Vec::new();
     if let (Some(start), [first, ..]) = (machine.start(), order)
         && start != *first
@@ -29,7 +29,7 @@ pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<Run>, Vec<B
 
 /// Combines the transitions of an interrupt from consecutive positions to the same destination into runs (R2). Returns
 /// the runs that end just before their destination, and the conditions that all other runs break.
-pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>) {
+pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<ScopeRun>, Vec<Broken>) {
     let places = places(order);
     let (mut runs, mut skips) = (Vec::new(), Vec::new());
     for ([interrupt, to], listed) in by_destination(machine, order) {
@@ -37,7 +37,7 @@ pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>)
         let behind = places[to.0 as usize];
         for part in listed.chunk_by(|one, next| one + 1 == *next) {
             let (Some(first), Some(last)) = (part.first(), part.last()) else { continue };
-            let run = Run { interrupt, first: *first, last: *last, to: behind };
+            let run = ScopeRun { interrupt, first: *first, last: *last, to: behind };
             end(machine, order, run, &mut runs, &mut skips);
         }
     }
@@ -46,7 +46,7 @@ pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>)
 
 /// Appends the run to `runs` if it ends just before its destination. Otherwise the interrupt leads past a state, and
 /// the broken condition is appended to `skips`.
-fn end(machine: &Machine, order: &[State], run: Run, runs: &mut Vec<Run>, skips: &mut Vec<Broken>) {
+fn end(machine: &Machine, order: &[State], run: ScopeRun, runs: &mut Vec<ScopeRun>, skips: &mut Vec<Broken>) {
     if run.last + 1 == run.to {
         runs.push(run);
         return;
@@ -74,7 +74,7 @@ fn by_destination(machine: &Machine, order: &[State]) -> Vec<([u32; 2], Vec<usiz
 }
 
 /// Returns the conditions that states without an interrupt of their own break (R1).
-fn atoms(machine: &Machine, order: &[State], runs: &[Run]) -> Vec<Broken> {
+fn atoms(machine: &Machine, order: &[State], runs: &[ScopeRun]) -> Vec<Broken> {
     let mut has_own = vec![false; order.len()];
     for run in runs.iter().filter(|run| run.first == run.last) {
         has_own[run.first] = true;
@@ -93,8 +93,8 @@ fn atoms(machine: &Machine, order: &[State], runs: &[Run]) -> Vec<Broken> {
 
 /// Returns the conditions that overlapping runs break if neither contains the other (R3). `runs` are sorted by their
 /// first position, longest first.
-pub(super) fn crossings(order: &[State], runs: &[Run]) -> Vec<Broken> {
-    let mut open: Vec<Run> = Vec::new();
+pub(super) fn crossings(order: &[State], runs: &[ScopeRun]) -> Vec<Broken> {
+    let mut open: Vec<ScopeRun> = Vec::new();
     let mut broken = Vec::new();
     for run in runs {
         while open.last().is_some_and(|around| around.last < run.first) {

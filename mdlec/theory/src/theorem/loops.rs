@@ -3,8 +3,8 @@
 
 use std::collections::BTreeSet;
 
-use super::beginning::{Before, Beginning, Boundary, Open};
-use super::{Answer, Broken, Found, InterruptId, Machine, State};
+use super::beginning::{Before, Beginning, Boundary, OpenScope};
+use super::{Broken, Found, InterruptId, Machine, State, TheoremResult};
 
 /// Maximum number of states that are reported as impossible successors of the longest prefix.
 const TOLD: usize = 10;
@@ -13,9 +13,9 @@ const TOLD: usize = 10;
 const REMEMBERS: u64 = 2_000;
 
 /// A step of the search: a position with a state, and the continuations that have been tried.
-struct Step {
+struct SearchStep {
     /// Scopes that are open at this position.
-    open: Vec<Open>,
+    open: Vec<OpenScope>,
     /// Index of the next state to try, among the states to which the last state leads and then all others.
     candidate: usize,
     /// Index, from 1, of the open scope that ends here in addition to those that must end; 0 for no scope.
@@ -24,7 +24,7 @@ struct Step {
     before: Before,
 }
 
-struct Search<'m> {
+struct LoopSearch<'m> {
     machine: &'m Machine,
     /// States in the order in which they are tried.
     candidates: &'m [State],
@@ -57,18 +57,18 @@ struct Leaves {
 
 /// Searches for the string of a machine with cycles in at most `steps` steps. States are tried in the order of
 /// `candidates`.
-pub(super) fn search(machine: &Machine, candidates: &[State], steps: u64) -> Answer {
+pub(super) fn search(machine: &Machine, candidates: &[State], steps: u64) -> TheoremResult {
     let completed = machine.completed();
     let atoms_only = completed.map(|_| completed);
     let mut taken = 0;
-    let mut answer = Answer::Stopped(steps);
+    let mut answer = TheoremResult::Stopped(steps);
     for completed in atoms_only.into_iter().chain([None]) {
         for early_ends in [true, false] {
-            let search = Search::new(machine, candidates, Leaves { completed, early_ends });
+            let search = LoopSearch::new(machine, candidates, Leaves { completed, early_ends });
             (answer, taken) = search.run(taken, steps);
             match answer {
-                Answer::String(_) | Answer::Stopped(_) => return answer,
-                Answer::None(_) => {}
+                TheoremResult::String(_) | TheoremResult::Stopped(_) => return answer,
+                TheoremResult::None(_) => {}
             }
         }
     }
@@ -82,7 +82,7 @@ fn successors(machine: &Machine, state: State) -> Vec<State> {
     machine.exits(state).iter().rev().map(|exit| exit.to).filter(|to| seen.insert(*to)).collect()
 }
 
-impl<'m> Search<'m> {
+impl<'m> LoopSearch<'m> {
     fn new(machine: &'m Machine, candidates: &'m [State], leaves: Leaves) -> Self {
         let states = (0..candidates.len()).map(|place| State(super::number(place)));
         Self {
@@ -97,9 +97,9 @@ impl<'m> Search<'m> {
     }
 
     /// Runs the search from step `taken` to at most step `limit`; returns the answer and the total number of steps.
-    fn run(mut self, taken: u64, limit: u64) -> (Answer, u64) {
+    fn run(mut self, taken: u64, limit: u64) -> (TheoremResult, u64) {
         let mut steps = taken;
-        let mut path = vec![Step { open: Vec::new(), candidate: 0, extra: 0, before: Before::default() }];
+        let mut path = vec![SearchStep { open: Vec::new(), candidate: 0, extra: 0, before: Before::default() }];
         while let Some(step) = path.last_mut() {
             let Some(next) = self.candidate(step) else {
                 if let Some(step) = path.pop() {
@@ -112,7 +112,7 @@ impl<'m> Search<'m> {
             };
             steps += 1;
             if steps > limit {
-                return (Answer::Stopped(limit), steps);
+                return (TheoremResult::Stopped(limit), steps);
             }
             let Some(ending) = self.ending(step, next) else { continue };
             let (open, before) = self.beginning.fill(ending, next);
@@ -120,20 +120,20 @@ impl<'m> Search<'m> {
                 self.beginning.take_back(before);
                 continue;
             }
-            path.push(Step { open, candidate: 0, extra: 0, before });
+            path.push(SearchStep { open, candidate: 0, extra: 0, before });
             if self.beginning.order.len() == self.candidates.len() {
                 let Beginning { order, runs, loops, .. } = self.beginning;
-                return (Answer::String(Found { order, runs, loops }), steps);
+                return (TheoremResult::String(Found { order, runs, loops }), steps);
             }
         }
         let Furthest { begins, tries, more } = self.furthest;
-        (Answer::None(vec![Broken::NoOrder { begins, tries, more }]), steps)
+        (TheoremResult::None(vec![Broken::NoOrder { begins, tries, more }]), steps)
     }
 
     /// Returns the next state to try. States to which the last state leads come first, then all others. After them, in
     /// the same order, come states before which a scope would end although other states of the scope have no position
     /// yet.
-    fn candidate(&self, step: &mut Step) -> Option<State> {
+    fn candidate(&self, step: &mut SearchStep) -> Option<State> {
         let order = &self.beginning.order;
         let near = order.last().map_or(&[][..], |last| &self.next[last.0 as usize]);
         let leads_back = order.is_empty() || near.iter().any(|to| self.beginning.place(*to).is_some());
@@ -162,7 +162,7 @@ impl<'m> Search<'m> {
 
     /// Returns the scopes and loops that end if `next` follows, together with the next choice of an additional open
     /// scope; the first choice is no additional scope. Returns `None` if they cannot end.
-    fn ending(&mut self, step: &mut Step, next: State) -> Option<Boundary> {
+    fn ending(&mut self, step: &mut SearchStep, next: State) -> Option<Boundary> {
         let extra = step.extra.checked_sub(1);
         let result = self.beginning.ending(&step.open, next, extra);
         step.extra += 1;

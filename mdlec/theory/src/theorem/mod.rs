@@ -42,13 +42,13 @@ pub struct Machine {
     states: Vec<String>,
     laws: Option<Vec<String>>,
     start: Option<State>,
-    interrupts: Vec<Named>,
+    interrupts: Vec<NamedInterrupt>,
     exits: Vec<Vec<Exit>>,
 }
 
 /// An interrupt's name and the text of its condition.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Named {
+pub struct NamedInterrupt {
     /// Name of the interrupt.
     pub name: String,
     /// Condition of the interrupt; `None` if the file has none.
@@ -66,7 +66,7 @@ pub struct Exit {
 
 /// Result of applying the theorem to a machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Answer {
+pub enum TheoremResult {
     /// The machine has this string.
     String(Found),
     /// The machine has no string, for these reasons.
@@ -81,14 +81,14 @@ pub struct Found {
     /// States in the order of their positions, with the termination state last.
     pub order: Vec<State>,
     /// Scopes of the string.
-    pub runs: Vec<Run>,
+    pub runs: Vec<ScopeRun>,
     /// Endless loops of the string.
     pub loops: Vec<Loop>,
 }
 
 /// A scope: an interrupt, and the consecutive positions from which it leads to the same position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Run {
+pub struct ScopeRun {
     /// Interrupt of the scope.
     pub interrupt: InterruptId,
     /// First position of the scope.
@@ -112,7 +112,7 @@ impl Machine {
     /// Returns a machine with these states and interrupts. Each interrupt has transitions, as pairs of source and
     /// destination, at most one from each state. Transitions from or to unknown states are ignored.
     #[must_use]
-    pub fn new(states: Vec<String>, interrupts: Vec<(Named, Vec<(State, State)>)>) -> Self {
+    pub fn new(states: Vec<String>, interrupts: Vec<(NamedInterrupt, Vec<(State, State)>)>) -> Self {
         let mut exits = vec![Vec::new(); states.len()];
         let mut named = Vec::with_capacity(interrupts.len());
         for (interrupt, (name, moves)) in (0..).map(InterruptId).zip(interrupts) {
@@ -140,7 +140,7 @@ impl Machine {
 
     /// Returns the interrupts.
     #[must_use]
-    pub fn interrupts(&self) -> &[Named] {
+    pub fn interrupts(&self) -> &[NamedInterrupt] {
         &self.interrupts
     }
 
@@ -184,7 +184,7 @@ impl Machine {
         &self.states[state.0 as usize]
     }
 
-    fn interrupt(&self, interrupt: InterruptId) -> &Named {
+    fn interrupt(&self, interrupt: InterruptId) -> &NamedInterrupt {
         &self.interrupts[interrupt.0 as usize]
     }
 }
@@ -197,17 +197,17 @@ fn number(place: usize) -> u32 {
 /// Returns the string of a machine, if there is one. For a machine with a cycle, this is a search of at most `steps`
 /// steps; for other machines the string is computed directly.
 #[must_use]
-pub fn decompile(machine: &Machine, steps: u64) -> Answer {
+pub fn decompile(machine: &Machine, steps: u64) -> TheoremResult {
     let broken = conditions::of_every_order(machine);
     if !broken.is_empty() {
-        return Answer::None(broken);
+        return TheoremResult::None(broken);
     }
     let order = order::forwards(machine);
     if !order::leads_forwards(machine, &order) {
         return loops::search(machine, &order, steps);
     }
     match loop_free::runs(machine, &order) {
-        Ok(runs) => Answer::String(Found { order, runs, loops: Vec::new() }),
-        Err(broken) => Answer::None(broken),
+        Ok(runs) => TheoremResult::String(Found { order, runs, loops: Vec::new() }),
+        Err(broken) => TheoremResult::None(broken),
     }
 }

@@ -28,7 +28,7 @@ const RESERVED: &[&str] = &[
 
 /// Names that are in use and, for each name, the number of names that were derived from it.
 #[derive(Default)]
-pub(super) struct Names {
+pub(super) struct UsedNames {
     taken: BTreeSet<String>,
     made: BTreeMap<String, usize>,
 }
@@ -43,7 +43,7 @@ pub(super) struct MachineTexts {
     pub(super) renamed: Vec<(String, String)>,
 }
 
-impl Names {
+impl UsedNames {
     /// Returns an unused name that resembles `like`.
     pub(super) fn name(&mut self, like: &str) -> String {
         let mut name: String = like.chars().map(|letter| if is_in_names(letter) { letter } else { '_' }).collect();
@@ -64,8 +64,8 @@ impl Names {
 }
 
 /// Returns the texts of a machine in a plan, and the names that are in use in them.
-pub(super) fn texts(machine: &Machine) -> (MachineTexts, Names) {
-    let mut names = Names::default();
+pub(super) fn texts(machine: &Machine) -> (MachineTexts, UsedNames) {
+    let mut names = UsedNames::default();
     // Words in the texts are names that are already in use.
     let of_interrupts = machine.interrupts().iter().filter_map(|interrupt| interrupt.text.as_deref());
     for text in of_interrupts.chain(machine.laws.iter().flatten().map(String::as_str)) {

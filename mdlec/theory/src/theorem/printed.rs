@@ -6,7 +6,7 @@
 
 use super::loop_free::{crossings, cut};
 use super::order::{forwards, places};
-use super::{Answer, InterruptId, Machine, State};
+use super::{InterruptId, Machine, State, TheoremResult};
 
 /// Result of checking a printed condition for a machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,12 +30,12 @@ struct Columns<'m> {
 /// cannot hold for a machine with a cycle. In this case the order is that of the machine's string `exactly` or, if it
 /// has no string, an order in which most interrupts lead forwards.
 #[must_use]
-pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
+pub fn as_printed(machine: &Machine, exactly: &TheoremResult) -> [Rule; 4] {
     let mut order = forwards(machine);
     let mut places = places(&order);
     let place = |state: &State| places[state.0 as usize];
     let leads_back = order.iter().any(|from| machine.exits(*from).iter().any(|exit| place(&exit.to) < place(from)));
-    if let (true, Answer::String(found)) = (leads_back, exactly) {
+    if let (true, TheoremResult::String(found)) = (leads_back, exactly) {
         order.clone_from(&found.order);
         places = super::order::places(&order);
     }

@@ -9,7 +9,7 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
-use super::{Machine, Named, State, number};
+use super::{Machine, NamedInterrupt, State, number};
 use mdle_compiler::alphabet::nearest;
 use mdle_compiler::syntax::{is_law, operands};
 
@@ -84,12 +84,12 @@ impl<'de> Visitor<'de> for MovesVisitor {
 pub fn read(text: &str) -> Result<Machine, FileError> {
     let written: Written = serde_json::from_str(text).map_err(|error| reason(&error))?;
     let states = States::new(&written.states)?;
-    let mut interrupts: Vec<(Named, BTreeMap<State, State>)> = Vec::new();
+    let mut interrupts: Vec<(NamedInterrupt, BTreeMap<State, State>)> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
     for WrittenInterrupt { name, moves, text } in written.interrupts {
         let place = *known.entry(name.clone()).or_insert(interrupts.len());
         if place == interrupts.len() {
-            interrupts.push((Named { name, text: None }, BTreeMap::new()));
+            interrupts.push((NamedInterrupt { name, text: None }, BTreeMap::new()));
         }
         if let Some(text) = text.as_ref().filter(|text| operands(text).is_none()) {
             return Err(refused(format!(

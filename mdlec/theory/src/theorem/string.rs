@@ -4,8 +4,8 @@
 use std::cmp::Reverse;
 use std::fmt::Write;
 
-use super::names::{MachineTexts, Names, in_a_comment, texts};
-use super::{Found, InterruptId, Machine, Run};
+use super::names::{MachineTexts, UsedNames, in_a_comment, texts};
+use super::{Found, InterruptId, Machine, ScopeRun};
 
 /// Maximum nesting depth of brackets in a plan. Deeper parts become separate plans, which are used by name.
 const DEPTH: usize = 100;
@@ -50,7 +50,8 @@ pub fn string(machine: &Machine, found: &Found) -> String {
     let root = root.filter(|_| last > 0 || enclosed.len() > 1);
     let rest = if root.is_some() { &enclosed[1..] } else { &enclosed[..] };
     let condition = root.and_then(|root| root.interrupt).map_or("null", |interrupt| condition(&texts, interrupt));
-    let mut writer = Writer { machine, found, texts: &texts, names, plans: vec![String::new()], open: Vec::new() };
+    let mut writer =
+        StringWriter { machine, found, texts: &texts, names, plans: vec![String::new()], open: Vec::new() };
     for (name, means) in &texts.renamed {
         let _ = writeln!(writer.plans[0], "// {name}: {}", in_a_comment(means));
     }
@@ -61,7 +62,7 @@ pub fn string(machine: &Machine, found: &Found) -> String {
     writer.plans.concat()
 }
 
-fn enclosed_by(run: &Run) -> Enclosed {
+fn enclosed_by(run: &ScopeRun) -> Enclosed {
     let rank = if run.to == run.first { Rank::LeadsBack } else { Rank::LeadsOut };
     Enclosed { first: run.first, last: Reverse(run.last), rank, interrupt: Some(run.interrupt) }
 }
@@ -84,7 +85,7 @@ fn condition(texts: &MachineTexts, interrupt: InterruptId) -> &str {
 }
 
 /// An open bracket, whose content is being written.
-struct Bracket {
+struct WrittenBracket {
     last: usize,
     end: &'static str,
     /// Index of the plan that contains the bracket.
@@ -93,17 +94,17 @@ struct Bracket {
     depth: usize,
 }
 
-struct Writer<'w> {
+struct StringWriter<'w> {
     machine: &'w Machine,
     found: &'w Found,
     texts: &'w MachineTexts,
-    names: Names,
+    names: UsedNames,
     /// Texts of the plans, the main plan first.
     plans: Vec<String>,
-    open: Vec<Bracket>,
+    open: Vec<WrittenBracket>,
 }
 
-impl Writer<'_> {
+impl StringWriter<'_> {
     /// Writes all scopes and loops, from left to right.
     fn write(&mut self, enclosed: &[Enclosed]) {
         let mut rest = enclosed;
@@ -135,7 +136,7 @@ impl Writer<'_> {
             self.line(&name);
             let plan = self.plans.len();
             self.plans.push(format!("{{ {name} ({})\n", interrupt.unwrap_or("null")));
-            self.open.push(Bracket { last, end: "}", plan, depth: 0 });
+            self.open.push(WrittenBracket { last, end: "}", plan, depth: 0 });
             if interrupt.is_none() {
                 self.begin(one);
             }
@@ -146,7 +147,7 @@ impl Writer<'_> {
             None => ("(".to_owned(), ")^inf"),
         };
         self.line(&start);
-        self.open.push(Bracket { last, end, plan, depth });
+        self.open.push(WrittenBracket { last, end, plan, depth });
     }
 
     /// Returns the position of the next line: the index of the plan, and the nesting depth in it.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_engine::Library;
-use mdle_files::{InputError, Known, SafetyEntry, Settings, Target, read_plan};
+use mdle_files::{InputError, KnownSettings, SafetyEntry, Settings, Target, read_plan};
 use mdle_host::{Call, Program, RecordedPlan};
 use mdle_runtime::{Printable, Sensed};
 
@@ -65,7 +65,7 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     let program = Program { plan: &first.name, version: "" };
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
-    for option in settings.run_options(arguments.target.as_deref(), &given, |_| Known::default())? {
+    for option in settings.run_options(arguments.target.as_deref(), &given, |_| KnownSettings::default())? {
         (linked.check)(program, &call(&arguments, option.arguments.clone())).map_err(|text| option.refused(&text))?;
         options.extend(option.arguments);
     }

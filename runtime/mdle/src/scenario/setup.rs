@@ -9,7 +9,7 @@ use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::diagnostic::judged;
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::link::Faults;
-use mdle_files::{Group, InputError, Spelling, Target};
+use mdle_files::{InputError, RobotGroup, Spelling, Target};
 use mdle_host::{Quantity, Target as _, setpoints};
 use mdle_runtime::{Alphabet, Nanos, Plan as _, Pose, Setpoint};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
@@ -232,7 +232,7 @@ fn placed(place: Range<usize>, error: InputError) -> SetupError {
 }
 
 /// Returns the name of a robot's part of a group's plan. The scenario must have all robots of the group.
-fn part(text: &RobotText, names: &[&str], group: &Group) -> Result<String, ScenarioError> {
+fn part(text: &RobotText, names: &[&str], group: &RobotGroup) -> Result<String, ScenarioError> {
     let (own, name) = (text.name.get_ref(), &group.name);
     let robots = group.robots.join(", ");
     let Some(part) = group.plan_of(own) else {

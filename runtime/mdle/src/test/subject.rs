@@ -9,7 +9,7 @@ use mdle_compiler::fsm::{self, Element, Machine, PlanWords};
 use mdle_compiler::load::{self, Loaded};
 use mdle_compiler::{Compiled, compile};
 use mdle_engine::Library;
-use mdle_files::{Input, InputError, Known, NamedProcess, Settings, Spelling, Target, read_plan};
+use mdle_files::{Input, InputError, KnownSettings, NamedProcess, Settings, Spelling, Target, read_plan};
 use mdle_host::Texts;
 use mdle_runtime::{Condition, Fsm, Sensed, Words};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
@@ -230,7 +230,7 @@ fn plan_file(path: &Path, tests: &TestFile) -> PathBuf {
 fn run_options(settings: &Settings, target: Option<&str>) -> Result<Vec<String>, Failure> {
     const OF_TESTS: [&str; 8] =
         ["--world=", "--start=", "--body=", "--without=", "--battery=", "--period=", "--paths=", "--start-noise="];
-    let options = settings.run_options(target, &[], |_| Known::default())?;
+    let options = settings.run_options(target, &[], |_| KnownSettings::default())?;
     let words = options.iter().flat_map(|option| &option.arguments).map(|word| word.to_string_lossy().into_owned());
     Ok(words.filter(|word| OF_TESTS.iter().any(|name| word.starts_with(name))).collect())
 }

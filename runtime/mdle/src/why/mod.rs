@@ -169,7 +169,9 @@ fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -
                 return Ok(Next::Turn { turn: turn.recorded.number, t: turn.recorded.t, steps });
             }
             Some(Err(stop @ (Stop::Differs(..) | Stop::Failed(_)))) => return Err(stop),
-            Some(Err(stop @ Stop::Unread(_))) => return Ok(Next::End { t, why: format!(": {}", stop.sentence()) }),
+            Some(Err(stop @ Stop::Unread(_))) => {
+                return Ok(Next::End { t, why: format!(": {}", stop.sentence()) });
+            }
             None => {
                 let why = end.map_or_else(String::new, |why| format!(": {why}"));
                 return Ok(Next::End { t, why });
