@@ -7,7 +7,7 @@ use std::fs;
 use std::process::Command;
 
 use mdle_compiler::Compiled;
-use mdle_compiler::trace::{Applied, COMPLETED, Script, Tree, run};
+use mdle_compiler::trace::{COMPLETED, Script, ScriptedInput, TreeWalk, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::pipeline::{LIBRARY, LIBRARY_FILE, compile};
@@ -26,11 +26,11 @@ const SCRIPTS: usize = 4;
 fn test(compiled: &Compiled, number: usize, script: &str) -> Option<(String, usize)> {
     let (mut atoms, mut transitions) = (Vec::new(), Vec::new());
     let mut before: Option<String> = None;
-    for line in run(Tree::new(&compiled.plan), &Script::read(script).unwrap()) {
+    for line in run(TreeWalk::new(&compiled.plan), &Script::read(script).unwrap()) {
         let law = match line.outcome.applied {
-            Applied::Law(law) => Some(law.to_owned()),
-            Applied::Over => None,
-            Applied::Cut => return None,
+            ScriptedInput::Law(law) => Some(law.to_owned()),
+            ScriptedInput::Over => None,
+            ScriptedInput::Cut => return None,
         };
         if let ([fired], Some(before)) = (line.outcome.fired.as_slice(), &before) {
             let by = if fired.by == COMPLETED { COMPLETED } else { &fired.operands[0] };

@@ -6,7 +6,7 @@
 use mdle_compiler::Compiled;
 use mdle_compiler::fsm::expand;
 use mdle_compiler::plan::{Node, Plan, Scope, remove_degeneracy};
-use mdle_compiler::trace::{Script, Tree, run};
+use mdle_compiler::trace::{Script, TreeWalk, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
@@ -62,7 +62,7 @@ fn hold(compiled: &Compiled, script: &Script, text: &str) -> (bool, bool) {
     let (again, warnings) = remove_degeneracy(nondegenerate.plan().clone());
     assert_eq!((&again, &*warnings), (nondegenerate, &[][..]), "{text}");
 
-    let trace = |plan: &Plan| run(Tree::new(plan), script).map(|line| format!("{line}\n")).collect::<String>();
+    let trace = |plan: &Plan| run(TreeWalk::new(plan), script).map(|line| format!("{line}\n")).collect::<String>();
     let expected = trace(plan);
     assert_eq!(trace(nondegenerate.plan()), expected, "without repeated interrupts:\n{text}");
     assert_eq!(trace(&expanded), expected, "written out:\n{text}");

@@ -9,7 +9,7 @@ use mdle_compiler::Compiled;
 use mdle_compiler::analysis::{Analysis, Reach, analyze, lints};
 use mdle_compiler::fsm::ElementKind;
 use mdle_compiler::plan::{Plan, Quark, condition_text};
-use mdle_compiler::trace::{Applied, Counted, Script, TraceLine, TurnResult, run};
+use mdle_compiler::trace::{CountedRun, Script, ScriptedInput, TraceLine, TurnResult, run};
 use mdle_runtime::{Cursor, Frame, Machine};
 use mdle_scripted::INTERRUPTS;
 use mdle_tests::chance::{Chance, repeated};
@@ -235,7 +235,7 @@ fn runs_last_as_long_as_analysis_computes() {
         let times: Vec<f64> = script.turns().iter().map(|turn| turn.t.0 as f64 / 1e9).collect();
         let gap = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
         for TraceLine { turn, outcome: TurnResult { applied, fired, .. }, .. } in
-            run(Counted::new(&compiled.machine), &script)
+            run(CountedRun::new(&compiled.machine), &script)
         {
             let now = times[turn];
             let message = || format!("seed {seed}, turn {turn} at {now} s\n{text}\n{}", analysis.to_text());
@@ -244,7 +244,7 @@ fn runs_last_as_long_as_analysis_computes() {
             let longest = analysis.longest.seconds.zip(analysis.longest.turns);
             let longest = longest.map(|(seconds, turns)| seconds + turns as f64 * gap + 1e-9);
             assert!(longest.is_none_or(|longest| now <= longest), "{}", message());
-            if applied == Applied::Over {
+            if applied == ScriptedInput::Over {
                 over += 1;
                 bounded += usize::from(longest.is_some());
                 assert!(analysis.shortest.is_some_and(|shortest| shortest <= now + 1e-9), "{}", message());

@@ -10,7 +10,7 @@ use mdle_compiler::diagnostic::SourceId;
 use mdle_compiler::fsm::{self, Element};
 use mdle_compiler::load;
 use mdle_compiler::syntax::{arena_for, parse};
-use mdle_compiler::trace::{Applied, COMPLETED, Script, TraceLine, TurnResult};
+use mdle_compiler::trace::{COMPLETED, Script, ScriptedInput, TraceLine, TurnResult};
 use mdle_scripted::alphabet::Alphabet;
 use mdle_scripted::drive;
 use mdle_tests::chance::{Chance, repeated};
@@ -169,8 +169,8 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
     seen.repeated += usize::from(compiled.nondegenerate.plan() != &compiled.plan);
     for TraceLine { outcome: TurnResult { applied, fired, .. }, .. } in tree {
         seen.turns += 1;
-        seen.over += usize::from(*applied == Applied::Over);
-        seen.cut += usize::from(*applied == Applied::Cut);
+        seen.over += usize::from(*applied == ScriptedInput::Over);
+        seen.cut += usize::from(*applied == ScriptedInput::Cut);
         seen.chains += usize::from(fired.len() > 1);
         let by = |word: &str| usize::from(fired.iter().any(|transition| transition.by.contains(word)));
         seen.rising += by("RISING");

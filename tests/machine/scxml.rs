@@ -4,7 +4,7 @@
 
 use mdle_compiler::picture::scxml;
 use mdle_compiler::plan::Nondegenerate;
-use mdle_compiler::trace::{Applied, Script, TableMachine, TraceLine, run};
+use mdle_compiler::trace::{Script, ScriptedInput, TableMachine, TraceLine, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::ecmascript::Value;
 use mdle_tests::golden::judge;
@@ -61,14 +61,14 @@ fn compare(plan: &Nondegenerate, script: &str, seen: &mut Seen) {
         let froms: Vec<_> = outcome.fired.iter().map(|fired| format!("a{}", fired.from)).collect();
         assert_eq!(left, froms, "turn {turn}");
         let (law, is_over) = match &outcome.applied {
-            Applied::Law(text) => (Value::Text((*text).to_owned()), false),
-            Applied::Cut => (Value::Null, false),
-            Applied::Over => (Value::Null, true),
+            ScriptedInput::Law(text) => (Value::Text((*text).to_owned()), false),
+            ScriptedInput::Cut => (Value::Null, false),
+            ScriptedInput::Over => (Value::Null, true),
         };
         assert_eq!((&machine.data["law"], machine.is_over()), (&law, is_over), "turn {turn}");
         let name = if is_over { "end".to_owned() } else { format!("a{}", outcome.state) };
         assert_eq!(machine.state(), name, "turn {turn}");
-        seen.cut += usize::from(outcome.applied == Applied::Cut);
+        seen.cut += usize::from(outcome.applied == ScriptedInput::Cut);
         seen.over += usize::from(is_over);
         seen.transitions += froms.len();
         let by = |word: &str| outcome.fired.iter().filter(|fired| fired.by.contains(word)).count();

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use mdle_compiler::diagnostic::Code;
-use mdle_compiler::fsm::{Draft, validate};
+use mdle_compiler::fsm::{MachineDraft, validate};
 use mdle_runtime::fsm::Kind;
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::pipeline::compile;
@@ -14,7 +14,7 @@ use mdle_tests::random_plan::RandomPlan;
 const MUTATIONS: u64 = 170;
 
 /// A function that makes a random part of a machine wrong, or leaves the machine unchanged.
-type Mutation = fn(&mut Draft, &mut Chance);
+type Mutation = fn(&mut MachineDraft, &mut Chance);
 
 /// Mutations of a machine, each with its description.
 const WRONG: &[(&str, Mutation)] = &[

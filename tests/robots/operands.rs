@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use mdle_compiler::trace::{COMPLETED, Reports, Script, Tree, run};
+use mdle_compiler::trace::{COMPLETED, Reports, Script, TreeWalk, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::pipeline::compile;
@@ -91,7 +91,7 @@ fn the_operands_named_are_exactly_those_that_fired() {
         let Ok(compiled) = compile(&text) else { continue };
         let script = Script::read(&script).expect("a script");
         let mut last = script.turns().first().map_or(0.0, |first| first.t.seconds());
-        for (line, reports) in run(Tree::new(&compiled.plan), &script).zip(script.turns()) {
+        for (line, reports) in run(TreeWalk::new(&compiled.plan), &script).zip(script.turns()) {
             for fired in &line.outcome.fired {
                 if fired.by == COMPLETED {
                     assert!(fired.operands.is_empty(), "seed {seed}: {line}");

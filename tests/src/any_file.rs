@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use mdle_compiler::alphabet::{self, AlphabetFile};
 use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
-use mdle_compiler::trace::{Counted, Script, run};
+use mdle_compiler::trace::{CountedRun, Script, run};
 use mdle_compiler::{Compiled, builtin, compile, rust};
 use mdle_host::setpoints;
 use mdle_record::frames::Frames;
@@ -79,7 +79,7 @@ pub fn script(bytes: &[u8]) {
     let Ok(script) = Script::read(&text(bytes)) else { return };
     assert!(script.turns().is_sorted_by_key(|turn| turn.t), "{script:?}");
     for plan in PLAN.iter() {
-        let lines = run(Counted::new(&plan.machine), &script);
+        let lines = run(CountedRun::new(&plan.machine), &script);
         assert!(lines.count() <= script.turns().len());
     }
 }

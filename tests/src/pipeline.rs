@@ -8,7 +8,7 @@ use mdle_compiler::alphabet::{self, Alphabet};
 use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors, most_shown};
 use mdle_compiler::fsm::{Machine, expand, lower};
 use mdle_compiler::syntax::Loader;
-use mdle_compiler::trace::{Counted, MatrixProduct, Script, TableMachine, TraceLine, Tree, run};
+use mdle_compiler::trace::{CountedRun, MatrixProduct, Script, TableMachine, TraceLine, TreeWalk, run};
 
 /// Maximum number of states up to which a plan is also run in its expanded form.
 const EXPANDED: u64 = 2000;
@@ -124,15 +124,15 @@ impl<'c> Machines<'c> {
     #[must_use]
     pub fn traces(&self, script: &Script) -> Vec<(&'static str, Vec<TraceLine<'_>>)> {
         let mut traces = vec![
-            ("tree", run(Tree::new(&self.compiled.plan), script).collect()),
-            ("counted", run(Counted::new(&self.compiled.machine), script).collect()),
+            ("tree", run(TreeWalk::new(&self.compiled.plan), script).collect()),
+            ("counted", run(CountedRun::new(&self.compiled.machine), script).collect()),
         ];
         if let Some(expanded) = &self.expanded {
             let plan = &self.compiled.nondegenerate;
             traces.extend([
                 ("table", run(TableMachine::new(plan).expect("a small plan"), script).collect()),
                 ("matrix", run(MatrixProduct::new(plan).expect("a small plan"), script).collect()),
-                ("counted, expanded", run(Counted::new(expanded), script).collect()),
+                ("counted, expanded", run(CountedRun::new(expanded), script).collect()),
             ]);
         }
         traces

@@ -3,7 +3,7 @@
 
 use mdle_compiler::diagnostic::Span;
 use mdle_compiler::plan::Plan;
-use mdle_compiler::trace::{Applied, OpenPart, Reports, Step, Tree};
+use mdle_compiler::trace::{OpenPart, Reports, ScriptedInput, TreeStep, TreeWalk};
 
 /// Maximum number of state copies. When it is reached, every second copy is dropped.
 const MOST_COPIES: usize = 64;
@@ -48,10 +48,10 @@ pub(crate) enum StepKind {
 #[derive(Debug)]
 pub(crate) struct Run<'p> {
     turns: &'p [Reports],
-    tree: Tree<'p>,
+    tree: TreeWalk<'p>,
     at: RunPosition,
     /// Copies of the state in the order of the run; the first one is the start of the run.
-    copies: Vec<(RunPosition, Tree<'p>)>,
+    copies: Vec<(RunPosition, TreeWalk<'p>)>,
     /// Number of turns between two copies of the state.
     apart: usize,
 }
@@ -59,7 +59,7 @@ pub(crate) struct Run<'p> {
 impl<'p> Run<'p> {
     /// Enters the plan at the first of `turns`; returns `None` if there is no turn.
     pub(crate) fn new(plan: &'p Plan, turns: &'p [Reports]) -> Option<Self> {
-        let mut tree = Tree::new(plan);
+        let mut tree = TreeWalk::new(plan);
         tree.begin(turns.first()?);
         let at = RunPosition { steps: 0, turn: 0, made: 0, input: None };
         Some(Self { turns, at, copies: vec![(at, tree.clone())], tree, apart: 32 })
@@ -121,9 +121,9 @@ impl<'p> Run<'p> {
             }
             TreeStep::End(applied) => {
                 self.at.input = Some(match applied {
-                    Applied::Law(_) => TurnInput::Law,
-                    Applied::Cut => TurnInput::Cut,
-                    Applied::Over => TurnInput::Over,
+                    ScriptedInput::Law(_) => TurnInput::Law,
+                    ScriptedInput::Cut => TurnInput::Cut,
+                    ScriptedInput::Over => TurnInput::Over,
                 });
                 StepKind::End
             }

@@ -41,7 +41,7 @@ pub struct ReadAlphabet {
 /// # Errors
 /// Fails if the alphabets have errors; returns the files and the diagnostics.
 pub fn read(own: Option<(String, String)>) -> Result<ReadAlphabet, (Sources, Vec<Diagnostic>)> {
-    let mut reading = Reading::default();
+    let mut reading = AlphabetFiles::default();
     let mut shared = Vec::new();
     for alphabet in alphabets().iter().filter(|alphabet| !alphabet.target) {
         shared.extend(reading.read(alphabet.file.to_owned(), alphabet.text.to_owned()));
@@ -54,7 +54,7 @@ pub fn read(own: Option<(String, String)>) -> Result<ReadAlphabet, (Sources, Vec
         }),
         None => shared.into_iter().next().map(language::Alphabet::shared),
     };
-    let Reading { sources, files, found } = reading;
+    let AlphabetFiles { sources, files, found } = reading;
     // An alphabet causes no warnings.
     match alphabet {
         Some(mut alphabet) if !has_errors(&found) => {
@@ -79,13 +79,13 @@ fn robots() -> Vec<(String, Vec<Capability>)> {
 
 /// State while alphabet files are read one after the other.
 #[derive(Default)]
-struct Reading {
+struct AlphabetFiles {
     sources: Sources,
     files: Vec<(String, String)>,
     found: Vec<Diagnostic>,
 }
 
-impl Reading {
+impl AlphabetFiles {
     fn read(&mut self, file: String, text: String) -> Option<AlphabetFile> {
         let source = self.sources.add(&file, &text);
         let (alphabet, found) = language::read(source, &text);

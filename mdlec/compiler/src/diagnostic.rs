@@ -12,7 +12,7 @@ use std::ops::Range;
 
 pub use explain::{Example, Explanation};
 pub use help::{Edit, Help};
-pub use json::{FileRange, Message};
+pub use json::{FileRange, JsonMessage};
 pub use sources::Sources;
 
 /// Identifier of a source file: its byte offset in the concatenation of all files.

@@ -33,7 +33,7 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use mdle_compiler::diagnostic::{Diagnostic, Message, Sources, has_errors};
+use mdle_compiler::diagnostic::{Diagnostic, JsonMessage, Sources, has_errors};
 use mdle_files::InputError;
 use mdle_runtime::Printable;
 
@@ -125,7 +125,7 @@ fn warnings(sources: &Sources, found: &[Diagnostic]) -> String {
 }
 
 /// Returns a warning as a single line, because cargo accepts only single lines.
-fn warning_line(warning: &Message<'_>) -> String {
+fn warning_line(warning: &JsonMessage<'_>) -> String {
     let place = warning.spans.first().map(|place| format!("{}:{}:{}: ", place.file, place.line, place.column));
     let help: String = warning.help.iter().map(|help| format!("; help: {help}")).collect();
     let text = format!("{}{}{help} [{}]", place.unwrap_or_default(), warning.message, warning.code.unwrap_or_default());

@@ -10,7 +10,7 @@ use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_runtime::{PrintableLines, is_printable};
 
 use super::{Color, CommandFailure, MessageFormat};
-use mdle_compiler::diagnostic::{Diagnostic, Message, Sources, has_errors, judged};
+use mdle_compiler::diagnostic::{Diagnostic, JsonMessage, Sources, has_errors, judged};
 
 /// Format of all messages of this process. It is set once, when the command line is read.
 static FORMAT: OnceLock<MessageFormat> = OnceLock::new();
@@ -61,7 +61,7 @@ fn render(sources: &Sources, found: &[Diagnostic]) {
 }
 
 /// Writes a message as one line of JSON.
-fn line(message: &Message<'_>) {
+fn line(message: &JsonMessage<'_>) {
     // If standard error is closed, the message cannot be shown, so a write error is ignored.
     let _ = writeln!(io::stderr().lock(), "{}", message.to_json());
 }
@@ -69,7 +69,7 @@ fn line(message: &Message<'_>) {
 /// Prints an error, in the format of the diagnostics.
 pub(super) fn error(message: &str) {
     if is_json() {
-        return line(&Message::plain("error", message));
+        return line(&JsonMessage::plain("error", message));
     }
     let _ = writeln!(io::stderr().lock(), "error: {}", PrintableLines(message));
 }
@@ -77,7 +77,7 @@ pub(super) fn error(message: &str) {
 /// Prints a note.
 pub(super) fn note(message: impl Display) {
     if is_json() {
-        return line(&Message::plain("note", &message.to_string()));
+        return line(&JsonMessage::plain("note", &message.to_string()));
     }
     let _ = writeln!(io::stderr().lock(), "{}", PrintableLines(message));
 }

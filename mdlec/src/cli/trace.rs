@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use super::{CommandFailure, Trace, TraceMachine, report};
 use mdle_compiler::Limit;
 use mdle_compiler::fsm::expanded_states;
-use mdle_compiler::trace::{Counted, MatrixProduct, Script, TableMachine, TraceLine, Tree, run};
+use mdle_compiler::trace::{CountedRun, MatrixProduct, Script, TableMachine, TraceLine, TreeWalk, run};
 use mdle_files::Settings;
 use mdle_files::read::LARGEST_DATA;
 
@@ -30,10 +30,10 @@ pub(super) fn trace(options: &Trace) -> Result<(), CommandFailure> {
         CommandFailure::PLAN
     };
     match options.machine {
-        TraceMachine::Tree => print(run(Tree::new(&compiled.plan), &script)),
+        TraceMachine::Tree => print(run(TreeWalk::new(&compiled.plan), &script)),
         TraceMachine::Table => print(run(TableMachine::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
         TraceMachine::Matrix => print(run(MatrixProduct::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
-        TraceMachine::Counted => print(run(Counted::new(&compiled.machine), &script)),
+        TraceMachine::Counted => print(run(CountedRun::new(&compiled.machine), &script)),
     }
 }
 

@@ -7,7 +7,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use mdle_compiler::fsm::Machine;
-pub(crate) use mdle_compiler::load::{Moment, ScopeMoment};
+pub(crate) use mdle_compiler::load::{PlanMoment, ScopeMoment};
 use mdle_engine::safety::{Guard, read};
 use mdle_host::{Texts, Transitions};
 use mdle_record::{Message, MessageKind, ReadError, RecordedTurn};
@@ -56,7 +56,7 @@ pub(crate) struct ExaminedTurn {
     /// The transitions, with their operands.
     pub(crate) transitions: Transitions,
     /// The state of the plan before each transition and at the end of the turn.
-    pub(crate) moments: Vec<Moment>,
+    pub(crate) moments: Vec<PlanMoment>,
     /// The input that the plan demanded.
     pub(crate) asked: Twist,
     /// Reason why the plan replaced another plan; empty for the first plan.

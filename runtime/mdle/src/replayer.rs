@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::fsm;
-use mdle_compiler::load::{self, Loaded, LoadedPlan, Moment};
+use mdle_compiler::load::{self, Loaded, LoadedPlan, PlanMoment};
 use mdle_engine::{Engine, EngineAlphabet, Library, When};
 use mdle_files::Target;
 use mdle_host::{
@@ -30,7 +30,7 @@ pub(crate) trait RecordedRun {
 
     /// Returns the machine of the plan that was active in the last turn, and the moments of that turn; `None`
     /// if the plan has not begun, or is not observed.
-    fn looked_at(&self) -> Option<(&Arc<fsm::Machine>, &[Moment])>;
+    fn looked_at(&self) -> Option<(&Arc<fsm::Machine>, &[PlanMoment])>;
 
     /// Returns the texts of the plan that was active in the last turn; `None` if it has not begun, or is not
     /// observed.
@@ -156,7 +156,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> RecordedRun for ReplayOf
         Some(Ok(self.made(recorded, messages)))
     }
 
-    fn looked_at(&self) -> Option<(&Arc<fsm::Machine>, &[Moment])> {
+    fn looked_at(&self) -> Option<(&Arc<fsm::Machine>, &[PlanMoment])> {
         self.helm.pilot().machine()?.plan().looked_at()
     }
 

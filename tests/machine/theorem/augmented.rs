@@ -2,7 +2,7 @@
 
 use mdle_compiler::alphabet;
 use mdle_compiler::diagnostic::{SourceId, Sources};
-use mdle_compiler::trace::{Applied, Counted, Script, run};
+use mdle_compiler::trace::{CountedRun, Script, ScriptedInput, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_theory::theorem::{Machine, augment};
 
@@ -73,12 +73,12 @@ fn the_plan_is_in_the_state_of_the_machine_turn_by_turn() {
         });
         let script = Script::read(&lines.collect::<String>()).expect("a script");
         let expected = states(atoms, &rows, &fired);
-        for (turn, (line, state)) in run(Counted::new(&compiled.machine), &script).zip(&expected).enumerate() {
+        for (turn, (line, state)) in run(CountedRun::new(&compiled.machine), &script).zip(&expected).enumerate() {
             let outcome = &line.outcome;
             assert_eq!((outcome.state - 2) as usize, *state, "seed {seed}, turn {turn}\n{rows:?}\n{text}");
-            let is_over = outcome.applied == Applied::Over;
+            let is_over = outcome.applied == ScriptedInput::Over;
             assert_eq!(is_over, *state == atoms, "seed {seed}, turn {turn}\n{text}");
-            let law = if is_over { Applied::Over } else { Applied::Law(&machine.states()[*state]) };
+            let law = if is_over { ScriptedInput::Over } else { ScriptedInput::Law(&machine.states()[*state]) };
             assert_eq!(outcome.applied, law, "seed {seed}, turn {turn}\n{text}");
             turns += 1;
             over += usize::from(is_over);

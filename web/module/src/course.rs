@@ -1,6 +1,6 @@
 //! Runs exchanges and turns in the same order as `mdle run`, but without a clock.
 
-use mdle_compiler::load::{LoadedPlan, Moment};
+use mdle_compiler::load::{LoadedPlan, PlanMoment};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Machine, Measured, Nanos, Plan as _, Robot as _, Sensed, Transition, Turn, Twist, Watch};
 use mdle_simulator::alphabet::Alphabet;
@@ -65,7 +65,7 @@ pub(crate) struct Made {
     /// `None`.
     pub(crate) began: Option<u32>,
     /// The state of the plan before each transition, and at the end of the turn.
-    pub(crate) moments: Vec<Moment>,
+    pub(crate) moments: Vec<PlanMoment>,
 }
 
 /// Transitions of a turn, each with the operands that fired.

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use mdle_compiler::load::Moment;
+use mdle_compiler::load::PlanMoment;
 use mdle_runtime::capability::SonarRing as _;
 use mdle_runtime::{Cause, Nanos, SONARS, SonarId};
 use mdle_simulator::{Point, echoes};
@@ -51,7 +51,7 @@ fn range(exchange: &Exchange, number: usize) -> Value {
 
 /// Returns the times since the entry of the innermost scope that encloses the current atom and since the entry of the
 /// atom, in this order. Returns an empty list if the atom has ended.
-fn since(moment: Option<&Moment>) -> Value {
+fn since(moment: Option<&PlanMoment>) -> Value {
     let scopes = moment.filter(|moment| moment.cause.is_none()).map_or(&[][..], |moment| &moment.scopes);
     let inner = scopes.get(scopes.len().saturating_sub(2)..).unwrap_or(scopes);
     inner.iter().map(|scope| round(scope.since.seconds())).collect()
@@ -59,7 +59,7 @@ fn since(moment: Option<&Moment>) -> Value {
 
 /// Returns the atoms that ended in the turn in which they were entered, each with the number of times that this
 /// happened.
-fn skipped(moments: &[Moment]) -> Value {
+fn skipped(moments: &[PlanMoment]) -> Value {
     let mut times = BTreeMap::<u32, u32>::new();
     for moment in moments.iter().filter(|moment| moment.cause.is_some() && moment.is_new()) {
         *times.entry(moment.atom).or_default() += 1;

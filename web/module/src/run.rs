@@ -1,7 +1,7 @@
 //! A run that a page advances turn by turn.
 
 use mdle_compiler::fsm::{Element, ElementKind};
-use mdle_compiler::load::{Moment, ScopeMoment};
+use mdle_compiler::load::{PlanMoment, ScopeMoment};
 use mdle_runtime::{Nanos, Plan as _};
 use serde_json::{Value, json};
 
@@ -34,7 +34,7 @@ pub(crate) struct Run {
     ready: ReadyRun,
     course: Course,
     /// Moments of each turn, from the first turn until the limit was reached.
-    moments: Vec<Vec<Moment>>,
+    moments: Vec<Vec<PlanMoment>>,
     /// Remaining size within the limits.
     left: Limits,
     /// `true` once the turns have reached their limit.
@@ -123,7 +123,7 @@ impl Run {
     }
 
     /// Stores the moments of a turn, if the moments of all earlier turns are stored and the limit allows it.
-    fn keep(&mut self, turn: u64, moments: Vec<Moment>) {
+    fn keep(&mut self, turn: u64, moments: Vec<PlanMoment>) {
         let size: usize = moments.iter().map(size).sum();
         if self.moments.len() as u64 == turn && size <= self.left.moments {
             self.left.moments -= size;
@@ -167,7 +167,7 @@ impl Run {
     }
 
     /// Repeats the run up to a turn, and returns the moments of that turn.
-    fn made_again(&self, turn: u64) -> Result<Vec<Moment>, String> {
+    fn made_again(&self, turn: u64) -> Result<Vec<PlanMoment>, String> {
         let mut course = Course::new(&self.plan, &self.ready, true)?;
         loop {
             let made = course.exchange().and_then(|exchange| course.turn(&exchange.y));
@@ -180,7 +180,7 @@ impl Run {
 }
 
 /// Returns the moments or, if there are too many to show, only the first ones and the last one.
-fn shown(mut moments: Vec<Moment>) -> Vec<Moment> {
+fn shown(mut moments: Vec<PlanMoment>) -> Vec<PlanMoment> {
     if moments.len() > MOMENTS_MOST {
         let last = moments.pop();
         moments.truncate(MOMENTS_MOST);
@@ -192,9 +192,9 @@ fn shown(mut moments: Vec<Moment>) -> Vec<Moment> {
 }
 
 /// Returns the size of a moment, in bytes.
-fn size(moment: &Moment) -> usize {
+fn size(moment: &PlanMoment) -> usize {
     let scope = |scope: &ScopeMoment| size_of::<ScopeMoment>() + size_of_val(scope.parts.as_slice());
-    size_of::<Moment>() + moment.scopes.iter().map(scope).sum::<usize>()
+    size_of::<PlanMoment>() + moment.scopes.iter().map(scope).sum::<usize>()
 }
 
 #[cfg(test)]

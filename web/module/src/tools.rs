@@ -7,7 +7,7 @@ use mdle_compiler::diagnostic::{Code, Diagnostic};
 use mdle_compiler::picture;
 use mdle_compiler::plan::signature;
 use mdle_compiler::syntax;
-use mdle_compiler::trace::{Counted, Script, run};
+use mdle_compiler::trace::{CountedRun, Script, run};
 use serde_json::{Value, json};
 
 use crate::document::Document;
@@ -79,7 +79,7 @@ pub(crate) fn trace(document: &mut Document<'_>, plan: Option<&str>, script: &st
     let script = Script::read(script).and_then(|script| compiled.worded(script, document.alphabet));
     let script = script.map_err(|error| format!("line {} of the script: {}", error.line, error.message))?;
     let mut text = String::new();
-    for line in run(Counted::new(&compiled.machine), &script) {
+    for line in run(CountedRun::new(&compiled.machine), &script) {
         text += &format!("{line}\n");
         if text.len() > TRACE_MOST {
             return Err("the trace is too long to be shown: use `mdlec trace`".to_owned());

@@ -2,15 +2,15 @@
 //! the turn.
 
 use mdle_compiler::fsm::Machine;
-use mdle_compiler::load::{Moment, ScopeMoment};
+use mdle_compiler::load::{PlanMoment, ScopeMoment};
 use mdle_compiler::plan::Condition;
 use mdle_quantity::operand_words;
 use mdle_runtime::{Examined, OperandWords, Words};
 use serde_json::{Value, json};
 
 /// Explains the moments of a turn.
-pub(crate) fn moments(machine: &Machine, words: &dyn Words, moments: &[Moment]) -> Value {
-    let moment = |moment: &Moment| {
+pub(crate) fn moments(machine: &Machine, words: &dyn Words, moments: &[PlanMoment]) -> Value {
+    let moment = |moment: &PlanMoment| {
         json!({
             "atom": moment.atom,
             "ends": moment.cause.is_some(),

@@ -21,7 +21,7 @@ pub(super) enum When {
 
 /// A condition in the scope of a bracket.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Read<'l> {
+pub(super) struct ScopedCondition<'l> {
     pub(super) condition: &'l Condition,
     pub(super) bracket: u32,
     pub(super) when: When,
@@ -64,8 +64,8 @@ impl Choices {
     }
 
     /// Returns the table of choices in which a condition has fired. A variable that was not enumerated counts as false.
-    pub(super) fn fired(&self, read: Read<'_>, machine: &Machine) -> TruthTable {
-        let Read { condition, bracket, when } = read;
+    pub(super) fn fired(&self, read: ScopedCondition<'_>, machine: &Machine) -> TruthTable {
+        let ScopedCondition { condition, bracket, when } = read;
         let column = |variable| self.columns.get(&variable).cloned().unwrap_or_else(|| self.constant(false));
         let timer = |nanos: u64| match when {
             When::Entered => self.constant(nanos == 0),
@@ -77,7 +77,7 @@ impl Choices {
             When::Later => column(Variable::Way(bracket, nanometers)),
             When::Past => column(Variable::PastWay(bracket, nanometers)),
         };
-        let inside = |operand| self.fired(Read { condition: operand, ..read }, machine);
+        let inside = |operand| self.fired(ScopedCondition { condition: operand, ..read }, machine);
         match condition {
             Condition::Null => self.constant(false),
             Condition::Quark(id) if machine.quark(*id).remembers => column(Variable::Own(bracket, *id)),
@@ -107,11 +107,11 @@ impl Choices {
 }
 
 /// Collects the variables of a condition in `found`; returns `false` if there are too many.
-pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<Variable>) -> bool {
+pub(super) fn variables(read: ScopedCondition<'_>, machine: &Machine, found: &mut BTreeSet<Variable>) -> bool {
     /// Maximum number of variables; greater than the number that can be enumerated, because some may have only one
     /// value.
     const MOST: usize = 4 * VARIABLES;
-    let Read { condition, bracket, when } = read;
+    let ScopedCondition { condition, bracket, when } = read;
     let timer = |nanos| match when {
         When::Entered | When::Later => Variable::Timer(bracket, nanos),
         When::Past => Variable::Past(bracket, nanos),
@@ -120,7 +120,7 @@ pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<
         When::Entered | When::Later => Variable::Way(bracket, nanometers),
         When::Past => Variable::PastWay(bracket, nanometers),
     };
-    let mut inside = |operand| variables(Read { condition: operand, ..read }, machine, found);
+    let mut inside = |operand| variables(ScopedCondition { condition: operand, ..read }, machine, found);
     match condition {
         Condition::Null => return true,
         Condition::Or(operands) | Condition::And(operands) => return operands.iter().all(inside),

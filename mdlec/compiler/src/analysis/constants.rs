@@ -3,14 +3,14 @@
 
 use std::collections::BTreeMap;
 
-use super::choices::{Read, When};
-use super::known::{KnownFacts, Question};
+use super::choices::{ScopedCondition, When};
+use super::known::{ConditionQuestion, KnownFacts};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Machine;
 use crate::plan::{Condition, Interrupt, condition_text};
 
 /// Evaluation of conditions without regard to enclosing scopes, on the assumption that every signal is a number.
-pub(super) struct Constants<'l> {
+pub(super) struct ConstantConditions<'l> {
     alone: KnownFacts<'l>,
 }
 
@@ -22,7 +22,7 @@ struct Pair {
     may_be_joined_otherwise: bool,
 }
 
-impl<'l> Constants<'l> {
+impl<'l> ConstantConditions<'l> {
     pub(super) fn new(machine: &'l Machine) -> Self {
         Self { alone: KnownFacts::of_numbers(machine) }
     }
@@ -153,9 +153,10 @@ impl<'l> Constants<'l> {
 
     /// Returns `true` if the conditions in `values` can have the given values in the same turn.
     fn is_possible(&self, bracket: u32, values: &[(&'l Condition, bool)], when: When) -> bool {
-        let wanted = values
-            .iter()
-            .map(|(condition, fired)| Question { any: vec![Read { condition, bracket, when }], fired: *fired });
+        let wanted = values.iter().map(|(condition, fired)| ConditionQuestion {
+            any: vec![ScopedCondition { condition, bracket, when }],
+            fired: *fired,
+        });
         self.alone.is_possible(&wanted.collect::<Vec<_>>(), &BTreeMap::new())
     }
 

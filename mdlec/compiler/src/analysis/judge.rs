@@ -4,12 +4,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::choices::When;
-use super::known::Question;
+use super::known::ConditionQuestion;
 use super::variables::Variable;
-use super::walk::{BracketFacts, OperandOutcome, Reach, Skip, Walk};
+use super::walk::{AnalysisWalk, BracketFacts, OperandOutcome, Reach, Skip};
 use crate::plan::Condition;
 
-impl<'l> Walk<'l> {
+impl<'l> AnalysisWalk<'l> {
     /// Determines the operands that can end a scope; returns the earliest time at which the scope can end, or `None` if
     /// it is never reached or never ends by itself.
     pub(super) fn judge(&mut self, number: u32, found: &mut BracketFacts) -> Option<u64> {
@@ -18,8 +18,8 @@ impl<'l> Walk<'l> {
         // If a search may reach the limit of a turn, the conditions of the element at which it stops are read again in
         // the next turn.
         let when = if self.one_turn { When::Entered } else { When::Later };
-        let none = Question { any: vec![self.read(condition, number, when)], fired: false };
-        let just = Question { any: self.facts.clone(), fired: true };
+        let none = ConditionQuestion { any: vec![self.read(condition, number, when)], fired: false };
+        let just = ConditionQuestion { any: self.facts.clone(), fired: true };
         let fixed = BTreeMap::new();
         let behind = just.any.first().map(|read| read.bracket);
         if !self.world.stays(number, condition, when) {
@@ -31,7 +31,7 @@ impl<'l> Walk<'l> {
             found.reach = Reach::Skipped;
             let operands = condition.operands().iter();
             let asked = operands.map(|operand| {
-                let fired = Question { any: vec![self.read(operand, number, when)], fired: true };
+                let fired = ConditionQuestion { any: vec![self.read(operand, number, when)], fired: true };
                 let asked = if just.any.is_empty() { vec![fired] } else { vec![fired, just.clone()] };
                 if self.world.is_possible(&asked, &fixed) { OperandOutcome::Possible } else { OperandOutcome::Never }
             });
@@ -60,7 +60,7 @@ impl<'l> Walk<'l> {
         /// that have already ended. An operand with more timers counts as possible at any time if it is possible at
         /// all.
         const TIMERS: usize = 8;
-        let asked = [Question { any: vec![self.read(operand, number, When::Later)], fired: true }];
+        let asked = [ConditionQuestion { any: vec![self.read(operand, number, When::Later)], fired: true }];
         let mut variables = BTreeSet::new();
         let fits = self.world.variables(asked[0].any[0], &mut variables);
         let timers: Vec<(Variable, u64)> = variables
@@ -96,7 +96,7 @@ impl<'l> Walk<'l> {
         {
             return OperandOutcome::Repeated(outer);
         }
-        if !self.alone.is_possible(&[Question { any: vec![read], fired: true }], &BTreeMap::new()) {
+        if !self.alone.is_possible(&[ConditionQuestion { any: vec![read], fired: true }], &BTreeMap::new()) {
             return OperandOutcome::Never;
         }
         let mut variables = BTreeSet::new();

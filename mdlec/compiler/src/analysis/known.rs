@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::choices::{self, Choices, Read, When};
+use super::choices::{self, Choices, ScopedCondition, When};
 use super::facts::PossibleFacts;
 use super::possible::possible;
 use super::tables::VARIABLES;
@@ -20,8 +20,8 @@ const CLAUSES: usize = 8;
 /// A question about conditions: is it possible that at least one of the conditions has fired (if `fired` is `true`), or
 /// that no condition has fired (if `fired` is `false`)?
 #[derive(Debug, Clone)]
-pub(super) struct Question<'l> {
-    pub(super) any: Vec<Read<'l>>,
+pub(super) struct ConditionQuestion<'l> {
+    pub(super) any: Vec<ScopedCondition<'l>>,
     pub(super) fired: bool,
 }
 
@@ -40,7 +40,7 @@ pub(super) struct KnownFacts<'l> {
     /// Path lengths at which enclosing scopes end, in nanometres, each with the scope's bracket; in descending order.
     distances: Vec<(u64, u32)>,
     /// Other conditions of enclosing scopes that have not fired, by the variables in them.
-    clauses: BTreeMap<Variable, Vec<Read<'l>>>,
+    clauses: BTreeMap<Variable, Vec<ScopedCondition<'l>>>,
     families: BTreeMap<Family<'l>, BTreeSet<QuarkId>>,
     /// Facts that `after` may find in a record.
     recorded: PossibleFacts,
@@ -114,7 +114,7 @@ impl<'l> KnownFacts<'l> {
     pub(super) fn open(&mut self, bracket: u32, condition: &'l Condition) -> Assumptions {
         let mut added = Assumptions::default();
         for condition in flat(condition) {
-            let read = Read { condition, bracket, when: When::Later };
+            let read = ScopedCondition { condition, bracket, when: When::Later };
             if let Condition::Driven { from, until: None, .. } = condition {
                 self.add_distance(*from, bracket, &mut added);
                 continue;
@@ -201,7 +201,7 @@ impl<'l> KnownFacts<'l> {
         found
     }
 
-    fn add_clause(&mut self, read: Read<'l>, added: &mut Assumptions) {
+    fn add_clause(&mut self, read: ScopedCondition<'l>, added: &mut Assumptions) {
         let mut variables = BTreeSet::new();
         if !self.variables(read, &mut variables) {
             return;
@@ -218,11 +218,11 @@ impl<'l> KnownFacts<'l> {
 
     /// Returns the only variable of a condition, with the value at which the condition has not fired; `None` for a
     /// condition other than a single quark, `wait` or `after` and their negations.
-    fn unit_of(&self, read: Read<'l>) -> Option<(Variable, bool)> {
+    fn unit_of(&self, read: ScopedCondition<'l>) -> Option<(Variable, bool)> {
         let leaf = |condition: &'l Condition| {
             let mut variables = BTreeSet::new();
             let is_leaf = matches!(condition, Condition::Quark(_) | Condition::Wait { .. } | Condition::After(_));
-            let read = Read { condition, ..read };
+            let read = ScopedCondition { condition, ..read };
             (is_leaf && self.variables(read, &mut variables)).then(|| variables.pop_first()).flatten()
         };
         if let Condition::Not(operand) = read.condition {
@@ -232,7 +232,7 @@ impl<'l> KnownFacts<'l> {
     }
 
     /// Collects the variables of a condition, known or not, in `found`; returns `false` if there are too many.
-    pub(super) fn variables(&self, read: Read<'l>, found: &mut BTreeSet<Variable>) -> bool {
+    pub(super) fn variables(&self, read: ScopedCondition<'l>, found: &mut BTreeSet<Variable>) -> bool {
         choices::variables(read, self.machine, found)
     }
 
@@ -263,7 +263,7 @@ impl<'l> KnownFacts<'l> {
 
     /// Returns `true` if the answer to all questions in `wanted` can be yes in the same turn; `fixed` contains
     /// variables with the values that they are assumed to have.
-    pub(super) fn is_possible(&self, wanted: &[Question<'l>], fixed: &BTreeMap<Variable, bool>) -> bool {
+    pub(super) fn is_possible(&self, wanted: &[ConditionQuestion<'l>], fixed: &BTreeMap<Variable, bool>) -> bool {
         let mut variables = BTreeSet::new();
         let reads = wanted.iter().flat_map(|wanted| &wanted.any);
         if !reads.into_iter().all(|read| self.variables(*read, &mut variables)) {
@@ -288,7 +288,7 @@ impl<'l> KnownFacts<'l> {
         for read in clauses {
             table = table.and(&choices.fired(read, self.machine).not());
         }
-        for Question { any, fired } in wanted {
+        for ConditionQuestion { any, fired } in wanted {
             let none = choices.constant(false);
             let some = any.iter().fold(none, |some, read| some.or(&choices.fired(*read, self.machine)));
             table = table.and(&if *fired { some } else { some.not() });
@@ -299,8 +299,8 @@ impl<'l> KnownFacts<'l> {
     /// Returns `true` if it is possible that an interrupt has not fired.
     pub(super) fn stays(&self, bracket: u32, condition: &'l Condition, when: When) -> bool {
         let not = |condition| {
-            let any = vec![Read { condition, bracket, when }];
-            self.is_possible(&[Question { any, fired: false }], &BTreeMap::new())
+            let any = vec![ScopedCondition { condition, bracket, when }];
+            self.is_possible(&[ConditionQuestion { any, fired: false }], &BTreeMap::new())
         };
         // If the OR is too long to be examined, each of its operands may still be short enough.
         let operands = condition.operands();
@@ -309,14 +309,18 @@ impl<'l> KnownFacts<'l> {
 
     /// Returns conditions of enclosing scopes that have not fired and share variables with `all`, as long as the number
     /// of free variables permits. Adds their variables to `all`.
-    fn clauses(&self, all: &mut BTreeSet<Variable>, value: &impl Fn(&Variable) -> Option<bool>) -> Vec<Read<'l>> {
+    fn clauses(
+        &self,
+        all: &mut BTreeSet<Variable>,
+        value: &impl Fn(&Variable) -> Option<bool>,
+    ) -> Vec<ScopedCondition<'l>> {
         let free = |all: &BTreeSet<Variable>| all.iter().filter(|variable| value(variable).is_none()).count();
-        let related: Vec<Read<'l>> = all
+        let related: Vec<ScopedCondition<'l>> = all
             .iter()
             .filter_map(|variable| self.clauses.get(variable))
             .flat_map(|clauses| clauses.iter().take(CLAUSES).copied())
             .collect();
-        let mut taken: Vec<Read<'l>> = Vec::new();
+        let mut taken: Vec<ScopedCondition<'l>> = Vec::new();
         for read in related {
             let mut with = all.clone();
             let is_new = taken.iter().all(|other| !std::ptr::eq(other.condition, read.condition));

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::constants::Constants;
+use super::constants::ConstantConditions;
 use super::walk::{BracketFacts, OperandOutcome, Skip};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::{Atom, Element, Exit, Machine};
@@ -13,7 +13,7 @@ use crate::plan::{Condition, Interrupt, Quark, condition_text};
 
 /// Returns the warnings about a machine.
 pub(super) fn lints(machine: &Machine, found: &[BracketFacts]) -> Vec<Diagnostic> {
-    let lints = Lints { machine, constants: Constants::new(machine) };
+    let lints = Lints { machine, constants: ConstantConditions::new(machine) };
     let mut uses: BTreeMap<Span, usize> = BTreeMap::new();
     let mut warnings: BTreeMap<(Span, Code), (usize, Diagnostic)> = BTreeMap::new();
     for (element, found) in machine.elements().zip(found) {
@@ -33,7 +33,7 @@ pub(super) fn lints(machine: &Machine, found: &[BracketFacts]) -> Vec<Diagnostic
 
 struct Lints<'l> {
     machine: &'l Machine,
-    constants: Constants<'l>,
+    constants: ConstantConditions<'l>,
 }
 
 impl<'l> Lints<'l> {

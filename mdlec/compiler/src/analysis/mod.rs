@@ -24,7 +24,7 @@ mod walk;
 use durations::Longest;
 use mdle_runtime::TRANSITIONS_PER_TURN;
 use serde::Serialize;
-pub use sizes::Bytes;
+pub use sizes::MachineSizes;
 pub use walk::Reach;
 use walk::{BracketFacts, OperandOutcome};
 
@@ -57,7 +57,7 @@ pub struct Analysis {
     /// Maximum time until the plan ends.
     pub longest: Duration,
     /// Size of the emitted machine.
-    pub bytes: Bytes,
+    pub bytes: MachineSizes,
     /// Facts about the plan and its behaviors, in order.
     pub scopes: Vec<ScopeAnswer>,
     /// Facts about the atoms, in order.

@@ -14,7 +14,7 @@ const PLACE: usize = 16;
 
 /// Sizes of the parts of the emitted machine on a 64-bit computer, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Bytes {
+pub struct MachineSizes {
     /// Form of the emitted plan: `code` or `rows`.
     pub form: &'static str,
     /// Size of the state that the machine keeps between turns, without the running law: position in the plan, times of
@@ -30,7 +30,7 @@ pub struct Bytes {
 }
 
 /// Returns the sizes of the parts of the emitted machine.
-pub(super) fn bytes(machine: &Machine) -> Bytes {
+pub(super) fn bytes(machine: &Machine) -> MachineSizes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
     // The atom's number in a cursor takes eight bytes, because numbers of eight bytes follow it.
     let entries = match machine.sizes().stamps {
@@ -41,7 +41,7 @@ pub(super) fn bytes(machine: &Machine) -> Bytes {
     let tables = machine.tables();
     let tables = size_of_val(tables.brackets) + size_of_val(tables.atoms);
     debug_assert!(align_of::<Bracket>() == 8 && align_of::<Atom>() == 8);
-    Bytes {
+    MachineSizes {
         form: match Shape::of(machine) {
             Shape::Code => "code",
             Shape::Rows => "rows",

@@ -9,7 +9,7 @@ use std::iter;
 
 use serde::Serialize;
 
-use super::choices::{Read, When};
+use super::choices::{ScopedCondition, When};
 use super::facts::PossibleFacts;
 use super::known::{Assumptions, KnownFacts};
 use crate::fsm::{Element, ElementKind, Machine, Visit};
@@ -74,10 +74,10 @@ pub(super) enum OperandOutcome {
 }
 
 /// Conditions of which at least one has just fired when an element is entered. The list is empty if nothing is known.
-type Facts<'l> = Vec<Read<'l>>;
+type RecentlyFired<'l> = Vec<ScopedCondition<'l>>;
 
 /// A bracket that encloses the current place of the walk.
-struct Open {
+struct EnclosingBracket {
     reach: Reach,
     /// Earliest entry of the bracket; `None` if it is never entered.
     clock: Option<u64>,
@@ -98,7 +98,7 @@ pub(super) struct PlanFacts {
 /// Walks over a machine whose records can hold the facts `facts`. `one_turn` is `true` if every search for the next
 /// atom ends within one turn.
 pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> PlanFacts {
-    let mut walk = Walk {
+    let mut walk = AnalysisWalk {
         world: KnownFacts::new(machine, facts),
         alone: KnownFacts::new(machine, facts),
         open: Vec::new(),
@@ -120,17 +120,17 @@ pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> 
     PlanFacts { found: walk.found, shortest: walk.clock }
 }
 
-pub(super) struct Walk<'l> {
+pub(super) struct AnalysisWalk<'l> {
     pub(super) world: KnownFacts<'l>,
     /// Facts that are known at a place without enclosing scopes.
     pub(super) alone: KnownFacts<'l>,
-    open: Vec<Open>,
+    open: Vec<EnclosingBracket>,
     found: Vec<BracketFacts>,
     /// For each timer, the brackets of the enclosing scopes that have the timer as an operand of their interrupt.
     pub(super) waits: BTreeMap<QuarkId, Vec<u32>>,
     /// Earliest entry of the next element; `None` if it is never entered.
     pub(super) clock: Option<u64>,
-    pub(super) facts: Facts<'l>,
+    pub(super) facts: RecentlyFired<'l>,
     /// `true` if, by the text alone, the element before the next one can end.
     written: bool,
     /// `true` if the next element is inside a skipped element.
@@ -141,7 +141,7 @@ pub(super) struct Walk<'l> {
     pub(super) one_turn: bool,
 }
 
-impl<'l> Walk<'l> {
+impl<'l> AnalysisWalk<'l> {
     pub(super) fn element(&self, number: u32) -> Element<'l> {
         self.world.machine.element(number)
     }
@@ -165,7 +165,7 @@ impl<'l> Walk<'l> {
         };
         // Of several successive elements that are never reached, only the first is reported.
         let written = self.written && !is_cut_off;
-        let mut open = Open { reach, clock: self.clock, own: None, added: Assumptions::default(), written };
+        let mut open = EnclosingBracket { reach, clock: self.clock, own: None, added: Assumptions::default(), written };
         self.written = written;
         match element.kind() {
             ElementKind::Loop { times } if times != Some(1) && reach == Reach::Runs => self.repeat(element),
@@ -197,8 +197,8 @@ impl<'l> Walk<'l> {
         }
     }
 
-    pub(super) fn read(&self, condition: &'l Condition, bracket: u32, when: When) -> Read<'l> {
-        Read { condition, bracket, when }
+    pub(super) fn read(&self, condition: &'l Condition, bracket: u32, when: When) -> ScopedCondition<'l> {
+        ScopedCondition { condition, bracket, when }
     }
 
     /// Adds the timers of a scope's interrupt to the timers of enclosing scopes when the scope is opened, and removes
@@ -217,7 +217,7 @@ impl<'l> Walk<'l> {
 
     /// Returns conditions of which at least one has fired when an element has ended; an empty list if that is not
     /// known.
-    fn exit(&self, element: Element<'l>) -> Facts<'l> {
+    fn exit(&self, element: Element<'l>) -> RecentlyFired<'l> {
         /// Maximum number of nested last elements that are examined, because they may end together with the element.
         const ENDING: usize = 8;
         let mut exits = Vec::new();

@@ -22,13 +22,13 @@ const CUT: &str = "…";
 #[derive(Debug)]
 pub(super) struct Excerpt<'s> {
     sources: &'s Sources,
-    files: BTreeMap<SourceId, Lines>,
+    files: BTreeMap<SourceId, ExcerptLines>,
     report: report::Diagnostic<SourceId>,
 }
 
 /// Shown lines of one file, concatenated.
 #[derive(Debug, Default)]
-struct Lines {
+struct ExcerptLines {
     text: String,
     /// Lines in the order of the file.
     lines: Vec<ExcerptLine>,
@@ -142,7 +142,7 @@ impl<'s> Excerpt<'s> {
         let mut files = BTreeMap::new();
         for (source, places) in places {
             let file = sources.shown_file(source)?;
-            let mut lines = Lines::default();
+            let mut lines = ExcerptLines::default();
             for (index, places) in places {
                 // The line after the last label may be missing.
                 if let Ok(range) = file.line_range((), index) {
@@ -159,12 +159,12 @@ impl<'s> Excerpt<'s> {
         Ok(Self { sources, files, report })
     }
 
-    fn lines(&self, source: SourceId) -> Result<&Lines, FilesError> {
+    fn lines(&self, source: SourceId) -> Result<&ExcerptLines, FilesError> {
         self.files.get(&source).ok_or(FilesError::FileMissing)
     }
 }
 
-impl Lines {
+impl ExcerptLines {
     /// Adds the line at `range` of a file, cut around `places`.
     fn add(&mut self, index: usize, source: &str, range: Range<usize>, places: &[usize]) {
         let start = self.text.len();

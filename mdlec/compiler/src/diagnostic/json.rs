@@ -7,7 +7,7 @@ use super::{Diagnostic, Label, Severity, Sources};
 
 /// A message. Without a code and without places, it is about the command and not about the plan.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Message<'a> {
+pub struct JsonMessage<'a> {
     /// Code of the message; `null` if it has none.
     pub code: Option<&'static str>,
     /// `error`, `warning` or `note`.
@@ -39,7 +39,7 @@ pub struct FileRange<'a> {
     pub text: &'a str,
 }
 
-impl<'a> Message<'a> {
+impl<'a> JsonMessage<'a> {
     /// Makes a message without a code. Lines of the text that begin with `help: ` become its help.
     #[must_use]
     pub fn plain(severity: &'static str, text: &'a str) -> Self {
@@ -59,8 +59,8 @@ impl<'a> Message<'a> {
 impl Sources {
     /// Converts the diagnostic to a message.
     #[must_use]
-    pub fn message<'a>(&'a self, diagnostic: &'a Diagnostic) -> Message<'a> {
-        Message {
+    pub fn message<'a>(&'a self, diagnostic: &'a Diagnostic) -> JsonMessage<'a> {
+        JsonMessage {
             code: Some(diagnostic.code.name()),
             severity: match diagnostic.code.severity() {
                 Severity::Warning => "warning",
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn hints_of_a_plain_message_are_its_help() {
-        let message = Message::plain("error", "there is no file `a`\nhelp: there is `a.mdle`");
+        let message = JsonMessage::plain("error", "there is no file `a`\nhelp: there is `a.mdle`");
         assert_eq!((message.message, &*message.help), ("there is no file `a`", &["there is `a.mdle`"][..]));
     }
 }

@@ -12,14 +12,14 @@ use super::{SourceId, Span};
 #[derive(Debug, Default)]
 pub struct Sources {
     /// Files in ascending order of their offsets.
-    files: Vec<(SourceId, File)>,
+    files: Vec<(SourceId, SourceFile)>,
     /// Place that was looked up last.
     last: Cell<Option<LineAndColumn>>,
 }
 
 /// A file as it is written, and as it is shown if that differs.
 #[derive(Debug)]
-struct File {
+struct SourceFile {
     written: SimpleFile<String, String>,
     shown: Option<PrintableFile>,
 }
@@ -41,7 +41,7 @@ impl Sources {
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
         let (id, name, text) = (self.next(), name.into(), text.into());
         let shown = PrintableFile::of(&name, &text);
-        self.files.push((id, File { written: SimpleFile::new(name, text), shown }));
+        self.files.push((id, SourceFile { written: SimpleFile::new(name, text), shown }));
         id
     }
 
@@ -67,7 +67,7 @@ impl Sources {
     }
 
     /// Returns the file that contains this offset; `None` if there are no files.
-    fn file(&self, byte: u32) -> Option<&(SourceId, File)> {
+    fn file(&self, byte: u32) -> Option<&(SourceId, SourceFile)> {
         let behind = self.files.partition_point(|(id, _)| id.0 <= byte);
         self.files.get(behind.checked_sub(1)?)
     }

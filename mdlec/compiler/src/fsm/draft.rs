@@ -10,7 +10,7 @@ use crate::plan::{Interrupt, Mark, Quark, QuarkId, RecordId};
 
 /// The tables of a machine, and the meaning of its brackets and atoms.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Draft {
+pub struct MachineDraft {
     /// The scopes and loops, in pre-order.
     pub brackets: Vec<Bracket>,
     /// The atoms as written, from left to right.
@@ -36,7 +36,7 @@ pub struct Draft {
     pub sizes: Sizes,
 }
 
-impl Draft {
+impl MachineDraft {
     /// Returns the tables in the form that the run-time system uses.
     pub(super) fn tables(&self) -> Fsm<'_> {
         Fsm { brackets: &self.brackets, atoms: &self.atoms, termination: self.termination }

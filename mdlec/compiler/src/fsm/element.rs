@@ -8,14 +8,14 @@ use std::iter;
 use mdle_runtime::Follows;
 use mdle_runtime::fsm::{Bracket, Kind};
 
-use super::draft::Draft;
+use super::draft::MachineDraft;
 use crate::diagnostic::Span;
 use crate::plan::{Condition, Interrupt, Mark, Quark, QuarkId};
 
 /// A scope, a loop or an atom of a machine.
 #[derive(Clone, Copy)]
 pub struct Element<'m> {
-    tables: &'m Draft,
+    tables: &'m MachineDraft,
     number: u32,
 }
 
@@ -46,7 +46,7 @@ pub enum Exit<'m> {
 
 impl<'m> Element<'m> {
     /// Returns the element with this number in these tables.
-    pub(super) fn new(tables: &'m Draft, number: u32) -> Self {
+    pub(super) fn new(tables: &'m MachineDraft, number: u32) -> Self {
         Self { tables, number }
     }
 
@@ -217,13 +217,13 @@ impl fmt::Debug for Element<'_> {
 /// An atom of a machine.
 #[derive(Clone, Copy)]
 pub struct Atom<'m> {
-    tables: &'m Draft,
+    tables: &'m MachineDraft,
     number: u32,
 }
 
 impl<'m> Atom<'m> {
     /// Returns the atom with this number in these tables.
-    pub(super) fn new(tables: &'m Draft, number: u32) -> Self {
+    pub(super) fn new(tables: &'m MachineDraft, number: u32) -> Self {
         Self { tables, number }
     }
 

@@ -27,11 +27,11 @@ pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
 /// Fails with E0501 or E0502 as [`expand`] does.
 pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     expanded_states(plan)?;
-    let parts = Count {
+    let parts = ElementSum {
         unit: "parts of conditions",
         of: |part| part.interrupt().map_or(0, |interrupt| interrupt.condition.parts() as u64),
     };
-    let text = Count {
+    let text = ElementSum {
         unit: "bytes of text",
         of: |part| {
             let name = part.scope().map_or(0, |scope| scope.name.len());
@@ -53,7 +53,7 @@ pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
 /// # Errors
 /// Fails with E0501 for a plan that cannot be lowered, E0502 for a plan with more than 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
-    let count = Count { unit: "states", of: |part| u64::from(part.atom().is_some()) };
+    let count = ElementSum { unit: "states", of: |part| u64::from(part.atom().is_some()) };
     let expanded = Expanded::of(PlanPart::Scope(&plan.plan().root), &count, true);
     let states = expanded.all.saturating_add(1);
     if states <= EXPANDED {
@@ -105,7 +105,7 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
 }
 
 /// A quantity that is added up over all elements, and the function that returns the amount of a single element.
-struct Count {
+struct ElementSum {
     /// Name of the quantity, in the plural.
     unit: &'static str,
     of: fn(PlanPart<'_>) -> u64,
@@ -121,7 +121,7 @@ struct Expanded {
 impl Expanded {
     /// Counts the quantity in all passes of finite loops if `passes` is `true`, and otherwise in one pass of
     /// each loop.
-    fn of(part: PlanPart<'_>, count: &Count, passes: bool) -> Self {
+    fn of(part: PlanPart<'_>, count: &ElementSum, passes: bool) -> Self {
         let inside = part.body().iter().map(|node| Self::of(node.part(), count, passes));
         let size = |repeated: &Option<(u64, Span)>| repeated.map_or(0, |(size, _)| size);
         let inside = inside.fold(Self { all: (count.of)(part), largest: None }, |sum, Self { all, largest }| {
@@ -134,7 +134,7 @@ impl Expanded {
     }
 }
 
-fn too_large(expanded: &Expanded, count: &Count, limit: u64, plan: &Nondegenerate) -> Diagnostic {
+fn too_large(expanded: &Expanded, count: &ElementSum, limit: u64, plan: &Nondegenerate) -> Diagnostic {
     let (all, unit) = (expanded.all, count.unit);
     let message = format!("expanded, this plan has {all} {unit}; an expanded form has at most {limit}");
     let help = "the executable, `--emit rust` and `trace` with its usual machine need no expansion: their size does not \

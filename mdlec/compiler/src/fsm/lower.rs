@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use mdle_runtime::fsm::{Atom, Bracket, Kind};
 use mdle_runtime::{Here, Radians};
 
-use super::draft::{Draft, LawMeaning, RecordPlace, ScopeMeaning, Sizes};
+use super::draft::{LawMeaning, MachineDraft, RecordPlace, ScopeMeaning, Sizes};
 use super::{Machine, observation1, validate};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{self, Mark, Node, Nondegenerate, Record, Scope};
@@ -22,7 +22,7 @@ pub const STATES: u64 = 1 << 53;
 pub fn lower(nondegenerate: &Nondegenerate) -> Result<Machine, Diagnostic> {
     let plan = nondegenerate.plan();
     let mut lowering = Lowering {
-        draft: Draft {
+        draft: MachineDraft {
             brackets: Vec::new(),
             atoms: Vec::new(),
             termination: 0,
@@ -45,7 +45,7 @@ pub fn lower(nondegenerate: &Nondegenerate) -> Result<Machine, Diagnostic> {
 }
 
 struct Lowering {
-    draft: Draft,
+    draft: MachineDraft,
 }
 
 /// Place of a node: the enclosing bracket, the numbers of enclosing scopes and loops, and the node's first

@@ -4,29 +4,29 @@ use std::iter;
 
 use mdle_runtime::{Fsm, Here};
 
-use super::draft::{Draft, RecordPlace, Sizes};
+use super::draft::{MachineDraft, RecordPlace, Sizes};
 use super::element::{Atom, Element, Exit, as_number};
 use crate::plan::{Quark, QuarkId, RecordId};
 
 /// The state machine of a plan, validated against the plan; only [`lower`](super::lower) constructs it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Machine(Draft);
+pub struct Machine(MachineDraft);
 
 impl Machine {
     /// Returns the machine with these validated tables.
-    pub(super) fn new(draft: Draft) -> Self {
+    pub(super) fn new(draft: MachineDraft) -> Self {
         Self(draft)
     }
 
     /// Returns a machine with tables that were not validated, for tests with tables that no plan produces.
     #[cfg(test)]
-    pub(crate) fn unvalidated(draft: Draft) -> Self {
+    pub(crate) fn unvalidated(draft: MachineDraft) -> Self {
         Self(draft)
     }
 
     /// Returns a copy of the tables, for tests that corrupt them.
     #[must_use]
-    pub fn draft(&self) -> Draft {
+    pub fn draft(&self) -> MachineDraft {
         self.0.clone()
     }
 

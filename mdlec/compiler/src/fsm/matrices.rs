@@ -109,7 +109,7 @@ pub fn matrices(plan: &Nondegenerate) -> Result<Matrices<'_>, Diagnostic> {
     brackets.scope(&plan.plan().root, BracketPlace { around: None, level: 0 });
     let transitions = brackets.all.iter().filter_map(|bracket| {
         let BracketKind::Scope { interrupt, name, level, here, record } = bracket.kind else { return None };
-        let Destination { row, afresh, ends_with } = brackets.destination(bracket);
+        let MatrixDestination { row, afresh, ends_with } = brackets.destination(bracket);
         let matrix = Matrix { first: bracket.first, last: bracket.last, row };
         Some(Transition { interrupt, name, level, here, matrix, afresh, record, marks: bracket.marks, ends_with })
     });
@@ -118,7 +118,7 @@ pub fn matrices(plan: &Nondegenerate) -> Result<Matrices<'_>, Diagnostic> {
 
 /// The scopes and the loops, in pre-order.
 struct Brackets<'p> {
-    all: Vec<Bracket<'p>>,
+    all: Vec<MatrixBracket<'p>>,
     laws: Vec<QuarkId>,
     frames: Vec<f64>,
     /// Number of interrupts so far.
@@ -126,7 +126,7 @@ struct Brackets<'p> {
 }
 
 /// A scope or a loop.
-struct Bracket<'p> {
+struct MatrixBracket<'p> {
     kind: BracketKind<'p>,
     around: Option<usize>,
     /// Labels of the elements that end together with the bracket.
@@ -163,7 +163,7 @@ struct BracketPlace {
 }
 
 /// Destination of an interrupt.
-struct Destination<'p> {
+struct MatrixDestination<'p> {
     row: usize,
     /// Number of the first interrupt whose scope restarts at the destination.
     afresh: usize,
@@ -209,7 +209,7 @@ impl<'p> Brackets<'p> {
     fn open(&mut self, kind: BracketKind<'p>, place: BracketPlace, marks: &'p [Mark]) -> usize {
         let (first, begins) = (self.laws.len(), self.interrupts);
         self.interrupts += usize::from(matches!(kind, BracketKind::Scope { .. }));
-        self.all.push(Bracket { kind, around: place.around, marks, first, last: first, begins, ends: begins });
+        self.all.push(MatrixBracket { kind, around: place.around, marks, first, last: first, begins, ends: begins });
         self.all.len() - 1
     }
 
@@ -221,7 +221,7 @@ impl<'p> Brackets<'p> {
     /// Returns the destination of a scope's interrupt: the start of the innermost enclosing loop without end
     /// whose last state is also the scope's last state; without such a loop, the state after the scope's last
     /// state.
-    fn destination(&self, scope: &Bracket<'_>) -> Destination<'p> {
+    fn destination(&self, scope: &MatrixBracket<'_>) -> MatrixDestination<'p> {
         let (mut outermost, mut ends_with) = (scope, Vec::new());
         while let Some(around) = outermost.around {
             let around = &self.all[around];
@@ -229,12 +229,12 @@ impl<'p> Brackets<'p> {
                 break;
             }
             if matches!(around.kind, BracketKind::WithoutEnd) {
-                return Destination { row: around.first, afresh: around.begins, ends_with };
+                return MatrixDestination { row: around.first, afresh: around.begins, ends_with };
             }
             ends_with.extend(around.marks);
             outermost = around;
         }
-        Destination { row: scope.last + 1, afresh: outermost.ends, ends_with }
+        MatrixDestination { row: scope.last + 1, afresh: outermost.ends, ends_with }
     }
 }
 

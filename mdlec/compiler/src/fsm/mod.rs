@@ -17,7 +17,7 @@ mod tests;
 mod validation;
 mod words;
 
-pub use draft::{Draft, LawMeaning, RecordPlace, ScopeMeaning, Sizes};
+pub use draft::{LawMeaning, MachineDraft, RecordPlace, ScopeMeaning, Sizes};
 pub use element::{Atom, Element, ElementKind, Exit};
 pub use expand::{expand, expanded_states, expands};
 pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};

@@ -13,7 +13,7 @@ use std::fmt;
 use mdle_runtime::fsm::{Bracket, Kind};
 use mdle_runtime::{Here, Radians};
 
-use super::{Draft, RecordPlace, Sizes};
+use super::{MachineDraft, RecordPlace, Sizes};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 
@@ -21,10 +21,11 @@ use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 ///
 /// # Errors
 /// Fails with E0901 for the first difference between plan and machine, which is a bug in the compiler.
-pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
+pub fn validate(plan: &Nondegenerate, draft: &MachineDraft) -> Result<(), Diagnostic> {
     let root = &plan.plan().root;
-    let mut walk = Walk { draft, brackets: 0, atoms: 0 };
-    let states = walk.scope(root, Around { holder: 0, behind: None, scopes: 0, loops: 0, states: 0, here: None })?;
+    let mut walk = NodeWalk { draft, brackets: 0, atoms: 0 };
+    let states =
+        walk.scope(root, NodePosition { holder: 0, behind: None, scopes: 0, loops: 0, states: 0, here: None })?;
     same(root.span, "its brackets", walk.brackets, draft.brackets.len() as u32)?;
     same(root.span, "its atoms", walk.atoms, draft.atoms.len() as u32)?;
     same(root.span, "its meanings", (walk.brackets, walk.atoms), (draft.scopes.len() as u32, draft.laws.len() as u32))?;
@@ -33,7 +34,7 @@ pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
 
 /// Position of a node in the plan.
 #[derive(Clone, Copy)]
-struct Around {
+struct NodePosition {
     /// Bracket of the enclosing node; for the plan, its own bracket.
     holder: u32,
     /// `true` if another node follows in the same string; `None` for the plan.
@@ -50,7 +51,7 @@ struct Around {
 
 /// Immediate consequence of the end of a node.
 #[derive(Debug, PartialEq)]
-enum Step {
+enum Consequence {
     /// The plan is over.
     Over,
     /// The atom `atom` becomes current, and everything inside the bracket `inside` restarts.
@@ -59,19 +60,19 @@ enum Step {
     Ends { bracket: u32 },
 }
 
-struct Walk<'l> {
-    draft: &'l Draft,
+struct NodeWalk<'l> {
+    draft: &'l MachineDraft,
     /// Number of brackets that the walk has visited.
     brackets: u32,
     /// Number of atoms that the walk has visited.
     atoms: u32,
 }
 
-impl Walk<'_> {
+impl NodeWalk<'_> {
     /// Compares a scope with the machine, and returns the number of its states.
-    fn scope(&mut self, scope: &Scope, around: Around) -> Result<u128, Diagnostic> {
+    fn scope(&mut self, scope: &Scope, around: NodePosition) -> Result<u128, Diagnostic> {
         let (number, first) = self.met();
-        let inside = Around {
+        let inside = NodePosition {
             holder: number,
             scopes: around.scopes.saturating_add(1),
             here: self.here(scope.here, around, scope.span)?,
@@ -87,11 +88,11 @@ impl Walk<'_> {
         Ok(states)
     }
 
-    fn sequence(&mut self, body: &[Node], inside: Around) -> Result<u128, Diagnostic> {
+    fn sequence(&mut self, body: &[Node], inside: NodePosition) -> Result<u128, Diagnostic> {
         let mut states = 0;
         for (place, node) in body.iter().enumerate() {
             let behind = Some(place + 1 < body.len());
-            let here = Around { behind, states: inside.states + states, ..inside };
+            let here = NodePosition { behind, states: inside.states + states, ..inside };
             states += match node {
                 Node::Atom(_) => self.atom(node, here)?,
                 Node::Scope(scope) => self.scope(scope, here)?,
@@ -101,10 +102,10 @@ impl Walk<'_> {
         Ok(states)
     }
 
-    fn repeated(&mut self, node: &Node, around: Around) -> Result<u128, Diagnostic> {
+    fn repeated(&mut self, node: &Node, around: NodePosition) -> Result<u128, Diagnostic> {
         let Node::Loop(repeated) = node else { return Ok(0) };
         let (number, first) = self.met();
-        let inside = Around { holder: number, loops: around.loops.saturating_add(1), ..around };
+        let inside = NodePosition { holder: number, loops: around.loops.saturating_add(1), ..around };
         let pass = self.sequence(&repeated.body, inside)?;
         // All passes of an endless loop use the same states.
         let (times, stride) = repeated.times.map_or((0, 0), |times| (times, pass));
@@ -123,7 +124,7 @@ impl Walk<'_> {
         Ok(pass * u128::from(times.max(1)))
     }
 
-    fn atom(&mut self, node: &Node, around: Around) -> Result<u128, Diagnostic> {
+    fn atom(&mut self, node: &Node, around: NodePosition) -> Result<u128, Diagnostic> {
         let Node::Atom(atom) = node else { return Ok(0) };
         let (number, first) = self.met();
         self.atoms += 1;
@@ -142,7 +143,7 @@ impl Walk<'_> {
 
     /// Returns the level of the innermost scope with `FRAME here` that contains the nodes of a scope; `None` if there
     /// is none. If the scope itself has `FRAME here`, also checks that the machine can store the heading of this scope.
-    fn here(&self, is_here: bool, around: Around, span: Span) -> Result<Option<u16>, Diagnostic> {
+    fn here(&self, is_here: bool, around: NodePosition, span: Span) -> Result<Option<u16>, Diagnostic> {
         let Sizes { stamps, levels, .. } = self.draft.sizes;
         match is_here {
             true if stamps && usize::from(around.scopes) < levels => Ok(Some(around.scopes)),
@@ -163,7 +164,7 @@ impl Walk<'_> {
     }
 
     /// Checks that a bracket has this kind and this first atom, and the successor that the plan requires.
-    fn bracket(&self, number: u32, first: u32, kind: Kind, around: Around, span: Span) -> Result<(), Diagnostic> {
+    fn bracket(&self, number: u32, first: u32, kind: Kind, around: NodePosition, span: Span) -> Result<(), Diagnostic> {
         let in_machine = self.draft.brackets.get(number as usize);
         same(
             span,
@@ -172,25 +173,26 @@ impl Walk<'_> {
             in_machine.map(|in_machine| (in_machine.kind, in_machine.first)),
         )?;
         let in_plan = match around.behind {
-            None => Step::Over,
+            None => Consequence::Over,
             // The walk has visited all atoms inside the bracket, so the next atom is the first after the bracket.
-            Some(true) => Step::Enters { atom: self.atoms, inside: around.holder },
-            Some(false) => Step::Ends { bracket: around.holder },
+            Some(true) => Consequence::Enters { atom: self.atoms, inside: around.holder },
+            Some(false) => Consequence::Ends { bracket: around.holder },
         };
         same(span, "what follows it", Some(in_plan), in_machine.and_then(|in_machine| self.step(number, in_machine)))
     }
 
     /// Returns the step that the machine takes when this bracket ends; `None` if the machine's tables are inconsistent.
-    fn step(&self, number: u32, bracket: &Bracket) -> Option<Step> {
+    fn step(&self, number: u32, bracket: &Bracket) -> Option<Consequence> {
         if number == 0 {
-            return (bracket.parent == 0 && bracket.last as usize + 1 == self.draft.atoms.len()).then_some(Step::Over);
+            return (bracket.parent == 0 && bracket.last as usize + 1 == self.draft.atoms.len())
+                .then_some(Consequence::Over);
         }
         // Because each parent has a smaller number, the steps outwards end at the plan.
         let holder = self.draft.brackets.get(bracket.parent as usize).filter(|_| bracket.parent < number)?;
         Some(if bracket.last == holder.last {
-            Step::Ends { bracket: bracket.parent }
+            Consequence::Ends { bracket: bracket.parent }
         } else {
-            Step::Enters { atom: bracket.last.saturating_add(1), inside: bracket.parent }
+            Consequence::Enters { atom: bracket.last.saturating_add(1), inside: bracket.parent }
         })
     }
 
@@ -207,7 +209,7 @@ impl Walk<'_> {
         number: u32,
         in_plan: Option<(&str, &Interrupt)>,
         marks: &[Mark],
-        around: Around,
+        around: NodePosition,
         span: Span,
     ) -> Result<(), Diagnostic> {
         let in_machine = self.draft.scopes.get(number as usize);
@@ -236,7 +238,7 @@ impl Walk<'_> {
 
     /// Checks that a record is stored after the memories of its scope's interrupt, and that the machine has enough
     /// memories for the record.
-    fn record(&self, record: Record, scope: &Scope, around: Around) -> Result<(), Diagnostic> {
+    fn record(&self, record: Record, scope: &Scope, around: NodePosition) -> Result<(), Diagnostic> {
         let (first, facts) = (scope.interrupt.memories, record.facts);
         let in_plan = RecordPlace { level: around.scopes, first, facts };
         same(scope.span, "its record", Some(in_plan), self.draft.records.get(&record.id).copied())?;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use mdle_runtime::{Alphabet, Begin, Cause, Ending, Fsm, Measured, Meeting, ModuleRead, Nanos, Plan, Words};
 
-use super::moments::{Moment, Position, moment};
+use super::moments::{PlanMoment, Position, moment};
 use super::table::LoadedRows;
 use super::{Entered, Loaded};
 use crate::fsm::Machine;
@@ -29,7 +29,7 @@ struct LookedAt<A: Alphabet> {
     /// Time of the last turn; `None` before the first turn.
     t: Option<Nanos>,
     /// The moments of the last turn, in order.
-    moments: Vec<Moment>,
+    moments: Vec<PlanMoment>,
 }
 
 impl<A: Alphabet> Loaded<A> {
@@ -61,7 +61,7 @@ impl<A: Alphabet> LoadedPlan<A> {
     /// Returns the machine of the plan and the moments of its last turn, in order; `None` if the plan is not
     /// observed.
     #[must_use]
-    pub fn looked_at(&self) -> Option<(&Arc<Machine>, &[Moment])> {
+    pub fn looked_at(&self) -> Option<(&Arc<Machine>, &[PlanMoment])> {
         self.looked_at.as_ref().map(|looked_at| (&looked_at.machine, &*looked_at.moments))
     }
 

@@ -18,10 +18,10 @@ use crate::diagnostic::Sources;
 use crate::fsm::{self, Machine, PlanWords, Rows};
 pub use entries::Entered;
 pub use loaded_plan::LoadedPlan;
-pub use moments::{Moment, ScopeMoment};
+pub use moments::{PlanMoment, ScopeMoment};
 pub use names::{MOST_NAMES, NameBudget};
-use quarks::Quarks;
-pub use table::{Loaded, Shared};
+use quarks::QuarkMaker;
+pub use table::{Loaded, SharedTables};
 
 /// Reason why a plan cannot be loaded.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -115,7 +115,7 @@ fn assemble<A: mdle_runtime::Alphabet>(
     machine: &Machine,
     (alphabet, budget): (&alphabet::Alphabet, &NameBudget),
 ) -> Result<Loaded<A>, LoadError> {
-    let quarks = Quarks { machine, alphabet, budget };
+    let quarks = QuarkMaker { machine, alphabet, budget };
     let interned = |name| names::interned(name, budget);
     let Rows { guards, operands, laws, marks, facts } = rows;
     let guards = guards.into_iter().map(|Guard { condition, level, around, follows }| {

@@ -12,7 +12,7 @@ pub(super) type Position = Cursor<Entered, Box<[u64]>>;
 
 /// State of the plan before a transition, or at the end of a turn.
 #[derive(Debug, Clone)]
-pub struct Moment {
+pub struct PlanMoment {
     /// Number of the current atom, as written, from 0.
     pub atom: u32,
     /// Cause of the transition; `None` at the end of a turn.
@@ -25,7 +25,7 @@ pub struct Moment {
     pub scopes: Vec<ScopeMoment>,
 }
 
-impl Moment {
+impl PlanMoment {
     /// Returns `true` if the atom was entered in this turn.
     #[must_use]
     pub fn is_new(&self) -> bool {
@@ -57,7 +57,7 @@ pub(super) fn moment<A: Alphabet>(
     cause: Option<Cause>,
     y: &A::Output,
     t: Nanos,
-) -> Moment {
+) -> PlanMoment {
     let (fsm, atom) = (rows.fsm(), cursor.atom());
     let own = fsm.atoms.get(atom as usize).map_or(0, |atom| atom.scope);
     let mut scopes: Vec<_> = fsm
@@ -68,7 +68,7 @@ pub(super) fn moment<A: Alphabet>(
         })
         .collect();
     scopes.reverse();
-    Moment { atom, cause, is_completed: rows.is_completed(y, t), stalled: cursor.stalled(), scopes }
+    PlanMoment { atom, cause, is_completed: rows.is_completed(y, t), stalled: cursor.stalled(), scopes }
 }
 
 /// Returns the state of a scope at a moment.

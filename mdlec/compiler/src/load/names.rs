@@ -16,7 +16,7 @@ use crate::fsm::AttributeRead;
 pub const MOST_NAMES: usize = 1_000_000;
 
 /// The names of this process.
-static NAMES: Mutex<Names> = Mutex::new(Names { kept: BTreeSet::new(), bytes: 0 });
+static NAMES: Mutex<KeptNames> = Mutex::new(KeptNames { kept: BTreeSet::new(), bytes: 0 });
 
 /// Number of bytes that new names in the plans from one source may still use. A separate budget prevents another
 /// robot's plans from using up the names that the operator's plans need.
@@ -73,12 +73,12 @@ pub(super) fn reads(
 }
 
 /// The names kept so far, and the number of their bytes.
-struct Names {
+struct KeptNames {
     kept: BTreeSet<&'static str>,
     bytes: usize,
 }
 
-impl Names {
+impl KeptNames {
     fn keep(&mut self, name: &str, budget: &NameBudget) -> Result<&'static str, LoadError> {
         if let Some(known) = self.kept.get(name) {
             return Ok(known);
@@ -107,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_name_is_kept_once_and_names_have_a_limit() {
-        let mut names = Names { kept: BTreeSet::new(), bytes: 0 };
+        let mut names = KeptNames { kept: BTreeSet::new(), bytes: 0 };
         let budget = NameBudget::new(usize::MAX);
         let mut keep = |name: &str| names.keep(name, &budget);
         let long = "a".repeat(MOST_NAMES - 4);
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_budget_leaves_the_other_names_alone() {
-        let mut names = Names { kept: BTreeSet::new(), bytes: 0 };
+        let mut names = KeptNames { kept: BTreeSet::new(), bytes: 0 };
         let (small, large) = (NameBudget::new(6), NameBudget::new(100));
         assert_eq!(names.keep("hall", &small), Ok("hall"));
         assert_eq!((names.keep("door", &small), names.bytes), (Err(LoadError::OverBudget), 4));

@@ -12,13 +12,13 @@ use crate::plan::{self, Compared, Quark, QuarkId, Value};
 
 /// Creates the quarks of a machine.
 #[derive(Clone, Copy)]
-pub(super) struct Quarks<'m> {
+pub(super) struct QuarkMaker<'m> {
     pub(super) machine: &'m Machine,
     pub(super) alphabet: &'m alphabet::Alphabet,
     pub(super) budget: &'m NameBudget,
 }
 
-impl Quarks<'_> {
+impl QuarkMaker<'_> {
     /// Returns a condition with its quark created.
     pub(super) fn condition<A: Alphabet>(
         self,

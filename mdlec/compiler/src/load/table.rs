@@ -42,10 +42,10 @@ pub(super) struct Owned<A: Alphabet> {
 }
 
 /// The table rows of a loaded plan, with its memories.
-pub(super) type LoadedRows<A> = InRows<Shared<A>, Entered, Box<[u64]>, Memories<Box<[bool]>>>;
+pub(super) type LoadedRows<A> = InRows<SharedTables<A>, Entered, Box<[u64]>, Memories<Box<[bool]>>>;
 
 /// Tables that several machines can run at the same time, each at its own position.
-pub struct Shared<A: Alphabet>(Arc<Loaded<A>>);
+pub struct SharedTables<A: Alphabet>(Arc<Loaded<A>>);
 
 impl<A: Alphabet> Loaded<A> {
     /// Returns the attributes of modules that the plan reads.
@@ -100,11 +100,11 @@ impl<A: Alphabet> Loaded<A> {
     pub(super) fn rows(self: &Arc<Self>) -> LoadedRows<A> {
         let width = u32::try_from(self.memories.0).unwrap_or(u32::MAX);
         let memory = Memories::new(width, vec![false; self.memories()].into());
-        InRows::remembering(Shared(Arc::clone(self)), self.entered.clone(), vec![0; self.slots].into(), memory)
+        InRows::remembering(SharedTables(Arc::clone(self)), self.entered.clone(), vec![0; self.slots].into(), memory)
     }
 }
 
-impl<A: Alphabet> Table for Shared<A> {
+impl<A: Alphabet> Table for SharedTables<A> {
     type Alphabet = A;
 
     #[inline(always)]

@@ -37,7 +37,7 @@ pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
     let records = made.transitions.iter().filter_map(|transition| transition.record);
     let facts = records.map(|record| (record.id, record.facts)).collect();
     let drives = made.transitions.iter().any(|transition| transition.interrupt.condition.drives());
-    let mut machine = Machine { plan, made: &made, drives, listing, facts, text: String::new() };
+    let mut machine = ScxmlWriter { plan, made: &made, drives, listing, facts, text: String::new() };
     machine.head();
     for (state, law) in made.laws.iter().enumerate() {
         machine.state(state, plan.quark(*law));
@@ -52,7 +52,7 @@ pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
     Ok(machine.text)
 }
 
-struct Machine<'m, 'p> {
+struct ScxmlWriter<'m, 'p> {
     plan: &'p Plan,
     made: &'m Matrices<'p>,
     /// `true` if the plan reads the length of the driven path; computed once, because the states may have many
@@ -65,7 +65,7 @@ struct Machine<'m, 'p> {
     text: String,
 }
 
-impl<'p> Machine<'_, 'p> {
+impl<'p> ScxmlWriter<'_, 'p> {
     fn line(&mut self, depth: usize, text: &str) {
         let indent = 2 * depth;
         self.text += &format!("{:indent$}{text}\n", "");

@@ -49,12 +49,12 @@ fn drawn(machine: &Machine, began: Option<&[u64]>) -> Result<String, Diagnostic>
         placed.x += MARGIN;
         placed.y += TITLE;
     }
-    let mut picture = Picture { machine, all: &all, began, text: String::new() };
+    let mut picture = SvgPicture { machine, all: &all, began, text: String::new() };
     picture.draw();
     Ok(picture.text)
 }
 
-struct Picture<'p> {
+struct SvgPicture<'p> {
     machine: &'p Machine,
     all: &'p [Placed],
     /// Number of times that each atom began, if the picture shows it.
@@ -62,7 +62,7 @@ struct Picture<'p> {
     text: String,
 }
 
-impl Picture<'_> {
+impl SvgPicture<'_> {
     fn line(&mut self, text: &str) {
         self.text.push_str(text);
         self.text.push('\n');

@@ -2,8 +2,8 @@
 //! (docs/src/reference/semantics.md, 2.4).
 
 use super::arguments::{Fitted, value};
-use super::parameters::{Names, Parameter};
-use super::quarks::Quarks;
+use super::parameters::{DefinitionNames, Parameter};
+use super::quarks::ResolvedQuarks;
 use super::{Compared, Comparison, Condition, Operator, Quark, QuarkId, Value};
 use crate::alphabet::{self, Decimal, Declaration, DeclarationKind, Kind, Unit, family_to_si};
 use crate::diagnostic::{Code, Diagnostic, Span};
@@ -18,7 +18,7 @@ type Resolved<T> = Result<T, Vec<Diagnostic>>;
 
 /// A signal with its arguments.
 #[derive(Clone, Copy)]
-struct Signal<'a> {
+struct SignalCall<'a> {
     quark: QuarkId,
     declaration: &'a Declaration,
     unit: Unit,
@@ -26,7 +26,7 @@ struct Signal<'a> {
     tolerance: f64,
 }
 
-impl Signal<'_> {
+impl SignalCall<'_> {
     /// Returns the tolerance as an exact value.
     fn tolerance(&self) -> Value {
         let exact = Decimal::parse(&self.tolerance.to_string()).unwrap_or_else(Decimal::zero);
@@ -55,8 +55,8 @@ pub fn is_way(declaration: &Declaration) -> bool {
 pub(super) fn resolve(
     written: &tree::Compared,
     span: Span,
-    quarks: &mut Quarks<'_>,
-    names: Names<'_, '_>,
+    quarks: &mut ResolvedQuarks<'_>,
+    names: DefinitionNames<'_, '_>,
 ) -> Resolved<Condition> {
     let signal = signal(written.left, quarks, names);
     if let (Ok(_), Operand::Signal(call)) = (&signal, &written.right)
@@ -125,7 +125,7 @@ pub(super) fn resolve(
 }
 
 /// Reports an unknown signal whose name is similar to the name of a parameter.
-fn like_parameter(call: &Call, quarks: &Quarks<'_>, names: Names<'_, '_>) -> Option<Diagnostic> {
+fn like_parameter(call: &Call, quarks: &ResolvedQuarks<'_>, names: DefinitionNames<'_, '_>) -> Option<Diagnostic> {
     let name = call.name;
     let is_known = names.parameters.get(name).is_some() || names.parameters.is_untyped(name);
     let is_signal = is_signal(name, quarks) || indexed(call, quarks).1.is_some();
@@ -136,8 +136,8 @@ fn like_parameter(call: &Call, quarks: &Quarks<'_>, names: Names<'_, '_>) -> Opt
 }
 
 /// Returns the argument given to a parameter, as a value to compare a signal with.
-fn given(parameter: &Parameter<'_>, at: Span, signal: Signal<'_>) -> Fitted {
-    let Signal { unit, declaration, .. } = signal;
+fn given(parameter: &Parameter<'_>, at: Span, signal: SignalCall<'_>) -> Fitted {
+    let SignalCall { unit, declaration, .. } = signal;
     if parameter.kind != unit.kind {
         return Err(parameter.mismatch(unit.kind, at).into());
     }
@@ -153,7 +153,7 @@ fn given(parameter: &Parameter<'_>, at: Span, signal: Signal<'_>) -> Fitted {
 }
 
 /// Returns `inf`, which is allowed only in a comparison of a time.
-fn without_end(at: Span, Signal { unit, declaration, .. }: Signal<'_>) -> Fitted {
+fn without_end(at: Span, SignalCall { unit, declaration, .. }: SignalCall<'_>) -> Fitted {
     if unit.kind == Kind::Time {
         return Ok((Value::Infinity(unit.kind), "inf".into()));
     }
@@ -163,7 +163,7 @@ fn without_end(at: Span, Signal { unit, declaration, .. }: Signal<'_>) -> Fitted
 }
 
 /// Returns the tolerance for a comparison of two signals: the larger one.
-fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> {
+fn same_kind(one: SignalCall<'_>, other: SignalCall<'_>, span: Span) -> Resolved<Value> {
     let refused = |message: String, help: &str| {
         let [here, there] =
             [one, other].map(|signal| format!("`{}` is {}", signal.declaration.name, signal.unit.kind.words()));
@@ -182,7 +182,7 @@ fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> 
         let message = format!("{} cannot be compared with {}", one.unit.kind.words(), other.unit.kind.words());
         return Err(refused(message, ""));
     }
-    let si = |signal: Signal<'_>| match signal.tolerance() {
+    let si = |signal: SignalCall<'_>| match signal.tolerance() {
         Value::Quantity { exact, family, .. } => exact.to_f64() * family_to_si(family),
         Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => 0.0,
     };
@@ -232,7 +232,11 @@ fn interval(comparison: &Comparison, counted: EntrySignal, span: Span) -> Resolv
 }
 
 /// Resolves `call` to a signal: `x`, also `x(t)`; `r 3`, also `r3`, `r_3` and `r_3(t)`.
-fn signal<'a>(call: &Call, quarks: &mut Quarks<'a>, names: Names<'_, '_>) -> Resolved<Signal<'a>> {
+fn signal<'a>(
+    call: &Call,
+    quarks: &mut ResolvedQuarks<'a>,
+    names: DefinitionNames<'_, '_>,
+) -> Resolved<SignalCall<'a>> {
     let args = match call.args {
         [args @ .., Arg::Name(name)] if name.node == TIME => args,
         args => args,
@@ -244,18 +248,18 @@ fn signal<'a>(call: &Call, quarks: &mut Quarks<'a>, names: Names<'_, '_>) -> Res
     let overload = quarks.get(quark).map_or(0, |quark| quark.overload);
     let declaration = quarks.alphabet().declarations_of(name).nth(overload);
     match declaration.and_then(|declaration| Some((declaration, declaration.unit?))) {
-        Some((declaration, (unit, tolerance))) => Ok(Signal { quark, declaration, unit, tolerance }),
+        Some((declaration, (unit, tolerance))) => Ok(SignalCall { quark, declaration, unit, tolerance }),
         // A signal without a unit is an error in the alphabet, which has been reported.
         None => Err(Vec::new()),
     }
 }
 
-fn is_signal(name: &str, quarks: &Quarks<'_>) -> bool {
+fn is_signal(name: &str, quarks: &ResolvedQuarks<'_>) -> bool {
     quarks.alphabet().declarations_of(name).any(|declaration| declaration.kind == DeclarationKind::Signal)
 }
 
 /// Reads `r_3` as the signal `r` with the number 3, if there is a signal `r` with a sonar as its only parameter.
-fn indexed<'s>(call: &Call<'s>, quarks: &Quarks<'_>) -> (&'s str, Option<Number<'s>>) {
+fn indexed<'s>(call: &Call<'s>, quarks: &ResolvedQuarks<'_>) -> (&'s str, Option<Number<'s>>) {
     let base = call.name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     let digits = &call.name[base.len()..];
     let name = base.strip_suffix('_').unwrap_or(base);

@@ -18,7 +18,7 @@ pub(super) struct Definitions<'a> {
     pub(super) names: Vec<&'a str>,
     by_name: BTreeMap<&'a str, usize>,
     /// For each plan, the plans to which it refers.
-    refers: Vec<BTreeMap<usize, Uses>>,
+    refers: Vec<BTreeMap<usize, PlanUses>>,
     /// Plans that are too large, or refer to a plan that is too large. Only the first is reported, not the
     /// plans that contain it.
     too_large: BTreeSet<usize>,
@@ -36,7 +36,7 @@ pub(super) struct Definitions<'a> {
 
 /// References in one plan to one other plan.
 #[derive(Debug, Clone, Copy)]
-struct Uses {
+struct PlanUses {
     first: Span,
     count: u64,
 }
@@ -173,9 +173,9 @@ impl<'a> Definitions<'a> {
             plan.name.node
         );
         let report = Diagnostic::new(Code::E0501, message, plan.name.span, "this plan");
-        let share = |(target, uses): &(&usize, &Uses)| excess.count(&sizes[**target]).saturating_mul(uses.count);
+        let share = |(target, uses): &(&usize, &PlanUses)| excess.count(&sizes[**target]).saturating_mul(uses.count);
         let report = match self.refers[index].iter().max_by_key(share) {
-            Some((target, Uses { first, count })) => {
+            Some((target, PlanUses { first, count })) => {
                 let (name, each) = (self.plans[*target].name.node, excess.count(&sizes[*target]));
                 let times = if *count == 1 { "once".to_owned() } else { format!("{count} times") };
                 report.also(*first, format!("`{name}` is used {times}, with {each} {unit} each time"))
@@ -246,10 +246,10 @@ fn calls<'a>(plan: &tree::Plan<'a>, by_name: &BTreeMap<&str, usize>) -> Vec<(usi
 }
 
 /// Groups calls by the plan to which they refer, which is given by its index.
-fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, Uses> {
+fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, PlanUses> {
     let mut references = BTreeMap::new();
     for (index, call) in calls {
-        references.entry(*index).or_insert(Uses { first: call.name_span(), count: 0 }).count += 1;
+        references.entry(*index).or_insert(PlanUses { first: call.name_span(), count: 0 }).count += 1;
     }
     references
 }

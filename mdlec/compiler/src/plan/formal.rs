@@ -17,13 +17,13 @@ impl Plan {
     pub fn formal(&self) -> String {
         let quarks = self.quarks.iter().map(|quark| quark.name.clone());
         let taken = quarks.chain([self.root.name.clone()]).collect();
-        let mut writer = Writer { plan: self, taken, numbers: BTreeMap::new(), definitions: Vec::new() };
+        let mut writer = FormalWriter { plan: self, taken, numbers: BTreeMap::new(), definitions: Vec::new() };
         writer.definition(self.root.name.clone(), &self.root);
         writer.definitions.concat()
     }
 }
 
-struct Writer<'p> {
+struct FormalWriter<'p> {
     plan: &'p Plan,
     /// Names that a further plan in the output cannot have.
     taken: BTreeSet<String>,
@@ -33,7 +33,7 @@ struct Writer<'p> {
     definitions: Vec<String>,
 }
 
-impl<'p> Writer<'p> {
+impl<'p> FormalWriter<'p> {
     /// Writes a plan under this name.
     fn definition(&mut self, name: String, scope: &'p Scope) {
         let number = self.definitions.len();

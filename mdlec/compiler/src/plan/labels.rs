@@ -12,15 +12,15 @@ use crate::syntax::tree::Name;
 #[derive(Debug, Clone)]
 pub(super) struct Labels {
     record: RecordId,
-    labels: BTreeMap<String, Label>,
+    labels: BTreeMap<String, LabelCauses>,
     /// Facts that `after` conditions read, by label and cause. Each has its number and the place of the first condition
     /// that reads it.
-    asked: BTreeMap<(String, Option<String>), Asked>,
+    asked: BTreeMap<(String, Option<String>), AfterLabel>,
 }
 
 /// A label with the causes that can end its element.
 #[derive(Debug, Clone)]
-struct Label {
+struct LabelCauses {
     span: Span,
     ends: EndCauses,
     /// `true` if another element has the same label.
@@ -40,7 +40,7 @@ pub(super) enum EndCauses {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Asked {
+struct AfterLabel {
     number: u32,
     label: Span,
     cause: Option<Span>,
@@ -67,7 +67,7 @@ impl Labels {
         }
         self.labels.insert(
             label.node.to_owned(),
-            Label { span: label.span, ends: EndCauses::WithItsLast, is_ambiguous: false },
+            LabelCauses { span: label.span, ends: EndCauses::WithItsLast, is_ambiguous: false },
         );
     }
 
@@ -87,7 +87,7 @@ impl Labels {
     pub(super) fn asked(&mut self, label: Name<'_>, cause: Option<(String, Span)>) -> (RecordId, u32) {
         let (words, span) = cause.unzip();
         let number = u32::try_from(self.asked.len()).unwrap_or(u32::MAX);
-        let asked = Asked { number, label: label.span, cause: span };
+        let asked = AfterLabel { number, label: label.span, cause: span };
         let asked = self.asked.entry((label.node.to_owned(), words)).or_insert(asked);
         (self.record, asked.number)
     }
@@ -119,7 +119,7 @@ impl Labels {
     }
 
     /// Returns the operand that must be the cause; `None` if any cause counts.
-    fn operand(&self, label: &str, cause: Option<&str>, asked: Asked) -> Result<Option<u32>, Box<Diagnostic>> {
+    fn operand(&self, label: &str, cause: Option<&str>, asked: AfterLabel) -> Result<Option<u32>, Box<Diagnostic>> {
         let Some(known) = self.labels.get(label) else { return Err(self.unknown(label, asked.label).into()) };
         let (Some(cause), Some(span)) = (cause, asked.cause) else { return Ok(None) };
         let here = |text: &str| Diagnostic::new(Code::E0207, text, span, "not a cause").also(known.span, "the label");

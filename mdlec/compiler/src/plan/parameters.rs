@@ -9,7 +9,7 @@ use crate::syntax::tree::{self, Arg, Name};
 
 /// The names that a definition can use in addition to those of its alphabet.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Names<'n, 's> {
+pub(super) struct DefinitionNames<'n, 's> {
     /// Plans of the file.
     pub(super) plans: &'n [&'s str],
     /// Parameters of the definition.

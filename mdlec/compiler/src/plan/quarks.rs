@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::arguments::{Arguments, complaints, fit, kind_words, signature, written};
 use super::moves;
-use super::parameters::Names;
+use super::parameters::DefinitionNames;
 use super::{Quark, QuarkId, Value};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
@@ -13,13 +13,13 @@ use crate::syntax::tree::Call;
 
 /// The quarks resolved so far.
 #[derive(Debug)]
-pub(super) struct Quarks<'a> {
+pub(super) struct ResolvedQuarks<'a> {
     alphabet: &'a Alphabet,
     met: Vec<Quark>,
     ids: BTreeMap<Quark, QuarkId>,
 }
 
-impl<'a> Quarks<'a> {
+impl<'a> ResolvedQuarks<'a> {
     pub(super) fn new(alphabet: &'a Alphabet) -> Self {
         Self { alphabet, met: Vec::new(), ids: BTreeMap::new() }
     }
@@ -41,7 +41,7 @@ impl<'a> Quarks<'a> {
         &mut self,
         call: &Call,
         kind: DeclarationKind,
-        names: Names<'_, '_>,
+        names: DefinitionNames<'_, '_>,
     ) -> Result<QuarkId, Vec<Diagnostic>> {
         let name = call.name;
         let declarations: Vec<&Declaration> = self.alphabet.declarations_of(name).collect();

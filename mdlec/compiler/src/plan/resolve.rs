@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::definitions::Definitions;
 use super::labels::{EndCauses, Labels};
-use super::parameters::{self, Names, Parameter, Parameters};
+use super::parameters::{self, DefinitionNames, Parameter, Parameters};
 use super::plan_arguments::with_arguments;
-use super::quarks::Quarks;
-use super::resolve_conditions::{self, Around};
+use super::quarks::ResolvedQuarks;
+use super::resolve_conditions::{self, ConditionScope};
 use super::size::Bounds;
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
 use crate::alphabet::{Alphabet, DeclarationKind, Kind, Unit};
@@ -119,7 +119,7 @@ fn framed(body: Vec<Node>, span: Span) -> Vec<Node> {
 
 struct Resolver<'r, 'a> {
     definitions: &'r Definitions<'a>,
-    quarks: Quarks<'r>,
+    quarks: ResolvedQuarks<'r>,
     uses: Uses,
     /// Parameters of the definition that is being resolved.
     parameters: Parameters<'a>,
@@ -134,7 +134,7 @@ struct Resolver<'r, 'a> {
 
 impl<'r, 'a> Resolver<'r, 'a> {
     fn new(definitions: &'r Definitions<'a>, alphabet: &'r Alphabet, uses: Uses) -> Self {
-        let quarks = Quarks::new(alphabet);
+        let quarks = ResolvedQuarks::new(alphabet);
         let (parameters, labels) = (Parameters::default(), Labels::new(RecordId(0)));
         Self { definitions, quarks, uses, parameters, labels, begun: 0, next: None, found: Vec::new() }
     }
@@ -169,8 +169,9 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     fn interrupt(&mut self, condition: Option<&tree::Condition<'_>>, scope: Span) -> (Interrupt, EndCauses) {
-        let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
-        let around = Around { quarks: &mut self.quarks, names, labels: &mut self.labels, found: &mut self.found };
+        let names = DefinitionNames { plans: &self.definitions.names, parameters: &self.parameters };
+        let around =
+            ConditionScope { quarks: &mut self.quarks, names, labels: &mut self.labels, found: &mut self.found };
         let (interrupt, operands) = resolve_conditions::interrupt(condition, scope, around);
         (interrupt, EndCauses::Operands(operands))
     }
@@ -283,7 +284,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     fn atom(&mut self, law: &Call<'a>, interrupt: Interrupt, frame: Framing, span: Span, nodes: &mut Vec<Node>) {
-        let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
+        let names = DefinitionNames { plans: &self.definitions.names, parameters: &self.parameters };
         match self.quarks.resolve(law, DeclarationKind::Control, names) {
             Ok(law) => nodes.push(Node::Atom(Atom {
                 law,

@@ -5,17 +5,17 @@ use std::num::NonZeroU32;
 
 use super::arguments::written;
 use super::labels::Labels;
-use super::parameters::Names;
-use super::quarks::Quarks;
+use super::parameters::DefinitionNames;
+use super::quarks::ResolvedQuarks;
 use super::{After, Condition, Interrupt, OperandPlace, QuarkId, Value, comparisons};
 use crate::alphabet::DeclarationKind;
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Call, Compared, ConditionNode, Operand};
 
 /// Context in which conditions are resolved.
-pub(super) struct Around<'r, 'a, 'n> {
-    pub(super) quarks: &'r mut Quarks<'a>,
-    pub(super) names: Names<'r, 'n>,
+pub(super) struct ConditionScope<'r, 'a, 'n> {
+    pub(super) quarks: &'r mut ResolvedQuarks<'a>,
+    pub(super) names: DefinitionNames<'r, 'n>,
     /// Labels of the definition that contains the condition.
     pub(super) labels: &'r mut Labels,
     pub(super) found: &'r mut Vec<Diagnostic>,
@@ -27,14 +27,14 @@ pub(super) struct Around<'r, 'a, 'n> {
 pub(super) fn interrupt(
     condition: Option<&tree::Condition>,
     scope: Span,
-    around: Around<'_, '_, '_>,
+    around: ConditionScope<'_, '_, '_>,
 ) -> (Interrupt, Vec<String>) {
     let Some(written) = condition else {
         return (Interrupt::none(scope), vec!["null".to_owned()]);
     };
     let mut resolving = Resolving { around, memories: 0 };
     let condition = resolving.condition(written);
-    let Resolving { around: Around { quarks, .. }, mut memories } = resolving;
+    let Resolving { around: ConditionScope { quarks, .. }, mut memories } = resolving;
     let name = |id| quarks.get(id).map(|quark| quark.text.clone()).unwrap_or_default();
     let operands = condition.operands().iter().map(|operand| condition_text(operand, &name)).collect();
     let text = condition_text(&condition, &name);
@@ -109,7 +109,7 @@ fn constant(condition: &Condition) -> Option<bool> {
 }
 
 struct Resolving<'r, 'a, 'n> {
-    around: Around<'r, 'a, 'n>,
+    around: ConditionScope<'r, 'a, 'n>,
     /// Number of RISINGs in this condition so far.
     memories: u32,
 }

@@ -13,12 +13,12 @@ pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &A
     let called: BTreeSet<&str> = files.plans.iter().flat_map(|plan| called_with_arguments(plan.elements)).collect();
     let mut found = Vec::new();
     for plan in files.plans.iter_mut().filter(|plan| plan.params.is_empty()) {
-        let Some(header) = Header::of(plan) else { continue };
+        let Some(header) = ParameterList::of(plan) else { continue };
         let is_known = |name: &str| {
             let mut declarations = alphabet.declarations_of(name);
             plans.contains(name) || declarations.any(|declaration| declaration.kind != DeclarationKind::Signal)
         };
-        let uses = Uses { alphabet, elements: header.elements };
+        let uses = UseFinder { alphabet, elements: header.elements };
         let is_used =
             called.contains(plan.name.node) || header.names.iter().any(|name| uses.kind_of(name.node).is_some());
         if header.names.iter().any(|name| is_known(name.node)) || !is_used {
@@ -45,7 +45,7 @@ pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &A
 }
 
 /// The parentheses after the name of a plan, if they may be parameters.
-struct Header<'s> {
+struct ParameterList<'s> {
     names: Vec<Name<'s>>,
     /// Type that is written before the name, if there is only one name.
     kind: Option<Kind>,
@@ -54,7 +54,7 @@ struct Header<'s> {
     elements: &'s [Element<'s>],
 }
 
-impl<'s> Header<'s> {
+impl<'s> ParameterList<'s> {
     fn of(plan: &Plan<'s>) -> Option<Self> {
         let Some(condition) = plan.condition else { return Self::of_formal(plan) };
         let ConditionNode::Call(call) = condition.node else { return None };
@@ -90,7 +90,7 @@ fn named<'s>(call: &Call<'s>) -> Name<'s> {
 
 /// Returns the kind that the first use of a parameter in its plan requires.
 pub(super) fn kind_by_use(plan: &Plan<'_>, name: &str, alphabet: &Alphabet) -> Option<Kind> {
-    Uses { alphabet, elements: plan.elements }.kind_of(name)
+    UseFinder { alphabet, elements: plan.elements }.kind_of(name)
 }
 
 /// Writes a type as in a plan.
@@ -115,12 +115,12 @@ fn called_with_arguments<'s>(elements: &[Element<'s>]) -> Vec<&'s str> {
 }
 
 /// Finds the uses of names in the elements of a plan.
-struct Uses<'a, 's> {
+struct UseFinder<'a, 's> {
     alphabet: &'a Alphabet,
     elements: &'s [Element<'s>],
 }
 
-impl Uses<'_, '_> {
+impl UseFinder<'_, '_> {
     /// Returns the kind that a name must have: a count if it is a loop count, and otherwise the kind of the first
     /// parameter that gets the name as its argument; `None` if the name is not used in these ways.
     fn kind_of(&self, name: &str) -> Option<Kind> {

@@ -20,7 +20,7 @@ use crate::syntax::tree::{
 const LAST_STOP: &str = "2s";
 
 /// Elements of each robot, in the order of the group.
-type Parts<'s> = Vec<Vec<Element<'s>>>;
+type RobotElements<'s> = Vec<Vec<Element<'s>>>;
 
 /// Returns the plans of the robots, in the order of the group, and the meetings of the first robot.
 pub(super) fn plans<'s>(
@@ -118,7 +118,7 @@ impl<'s> Build<'_, 's> {
         self.arena.alloc_slice_copy(&[&*self.arena.alloc_str(&line)])
     }
 
-    fn elements(&mut self, elements: &[Element<'s>]) -> Parts<'s> {
+    fn elements(&mut self, elements: &[Element<'s>]) -> RobotElements<'s> {
         let mut parts = vec![Vec::new(); self.robots.len()];
         for element in elements {
             if let Some(power) = element.power() {
@@ -165,7 +165,7 @@ impl<'s> Build<'_, 's> {
 
     /// Projects an atom. In the plan of the first robot the atom keeps its condition; in the plan of every other robot
     /// it runs until the first robot has reached its next atom.
-    fn group_atom(&mut self, atom: &Atom<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
+    fn group_atom(&mut self, atom: &Atom<'s>, element: &Element<'s>, parts: &mut RobotElements<'s>) {
         let condition = conditions::of_atom(&atom.condition, self);
         self.done += 1;
         let laws = match atom.control.name {
@@ -192,7 +192,7 @@ impl<'s> Build<'_, 's> {
     }
 
     /// Projects a behavior in place, whose condition the first robot reads.
-    fn behavior(&mut self, plan: &Plan<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
+    fn behavior(&mut self, plan: &Plan<'s>, element: &Element<'s>, parts: &mut RobotElements<'s>) {
         if let [param, ..] = plan.params {
             self.refuse("a plan in a group has no parameters", param.name.span, "write the value in each place");
         }
@@ -208,7 +208,7 @@ impl<'s> Build<'_, 's> {
 
     /// Appends the projected elements of a string to the elements of each robot. The first robot keeps the string's
     /// label and frame; another robot keeps the frame if a law in its elements may use it.
-    fn joined(&self, inner: Parts<'s>, element: &Element<'s>, parts: &mut Parts<'s>) {
+    fn joined(&self, inner: RobotElements<'s>, element: &Element<'s>, parts: &mut RobotElements<'s>) {
         for (robot, (part, inner)) in parts.iter_mut().zip(inner).enumerate() {
             let label = element.label().filter(|_| robot == 0);
             let frame = element.frame().filter(|_| robot == 0 || use_frame(self.alphabet, &inner));

@@ -109,7 +109,7 @@ enum BracketKind {
 
 /// An open bracket.
 #[derive(Debug, Clone, Copy)]
-struct Open {
+struct OpenBracket {
     kind: BracketKind,
     /// Place of the bracket; `None` if it was inserted.
     place: Option<TextRange>,
@@ -133,7 +133,7 @@ struct Pass<'t, 's> {
     source: FileText<'s>,
     raw: &'t [Token<'s>],
     balanced: Balanced<'s>,
-    open: Vec<Open>,
+    open: Vec<OpenBracket>,
     /// Number of open braces.
     braces: usize,
     /// Last run of closing brackets without opening brackets.
@@ -238,7 +238,7 @@ impl<'s> Pass<'_, 's> {
             return false;
         }
         let place = (!token.place.is_empty()).then_some(token.place);
-        self.open.push(Open { kind, place, raw, stray: None });
+        self.open.push(OpenBracket { kind, place, raw, stray: None });
         match kind {
             BracketKind::Brace => {
                 self.braces += 1;
@@ -254,7 +254,7 @@ impl<'s> Pass<'_, 's> {
     }
 
     /// Closes the innermost open bracket, and returns it.
-    fn close(&mut self, token: Token<'s>) -> Option<Open> {
+    fn close(&mut self, token: Token<'s>) -> Option<OpenBracket> {
         let open = self.open.pop()?;
         self.push(token);
         match open.kind {
@@ -268,7 +268,7 @@ impl<'s> Pass<'_, 's> {
     }
 
     /// Closes the innermost open bracket although the text has no closing bracket.
-    fn force(&mut self) -> Option<Open> {
+    fn force(&mut self) -> Option<OpenBracket> {
         let kind = if self.open.last()?.kind == BracketKind::Brace { Tok::RBrace } else { Tok::RParen };
         self.balanced.regions.spoil();
         let end = self.balanced.tokens.last().map_or(0, |token| token.place.end);

@@ -44,7 +44,7 @@ pub struct Files<'s> {
 }
 
 /// A file whose used files are being parsed.
-struct Open<'s> {
+struct OpenFile<'s> {
     source: SourceId,
     uses: Vec<Name<'s>>,
     /// Number of used files that have been parsed.
@@ -62,7 +62,7 @@ pub fn parse_with<'s>(
     let (file, mut found) = parse(source, text, arena);
     let mut files = Files { own: file.plans.len(), plans: file.plans, is_incomplete: file.is_incomplete };
     let mut met = BTreeSet::from([source]);
-    let mut open = vec![Open { source, uses: file.uses, done: 0 }];
+    let mut open = vec![OpenFile { source, uses: file.uses, done: 0 }];
     while let Some(here) = open.last_mut() {
         let Some(used) = here.uses.get(here.done).copied() else {
             open.pop();
@@ -79,7 +79,7 @@ pub fn parse_with<'s>(
                 files.plans.extend(file.plans);
                 files.is_incomplete |= file.is_incomplete;
                 found.extend(more);
-                open.push(Open { source, uses: file.uses, done: 0 });
+                open.push(OpenFile { source, uses: file.uses, done: 0 });
             }
             Ok(source) => found.extend(cycle(&open, source)),
         }
@@ -94,7 +94,7 @@ fn unusable(used: Name<'_>, reason: String) -> Diagnostic {
 }
 
 /// Returns the diagnostic of a circular use: the last open file uses `source`, which is also open.
-fn cycle(open: &[Open<'_>], source: SourceId) -> Option<Diagnostic> {
+fn cycle(open: &[OpenFile<'_>], source: SourceId) -> Option<Diagnostic> {
     let from = open.iter().position(|file| file.source == source)?;
     let cycle = open.get(from..)?;
     let mut uses = cycle.iter().filter_map(|file| file.uses.get(file.done.checked_sub(1)?));

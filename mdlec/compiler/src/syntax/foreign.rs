@@ -99,13 +99,13 @@ struct Rewriting<'t, 's> {
     /// Index of each original token among the new tokens.
     moved: Vec<usize>,
     /// Open brackets, the innermost last.
-    open: Vec<Open>,
+    open: Vec<OpenDelimiter>,
     /// Messages, each with the index of the new token after the reported text, and the place of that text.
     found: Vec<(usize, TextRange, Diagnostic)>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Open {
+enum OpenDelimiter {
     Brace,
     /// A brace that is read as a parenthesis.
     Rewritten,
@@ -167,25 +167,25 @@ impl<'s> Rewriting<'_, 's> {
         let mut kind = token.kind;
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no brackets")]
         match token.kind {
-            Tok::LBrace => self.open.push(Open::Brace),
+            Tok::LBrace => self.open.push(OpenDelimiter::Brace),
             Tok::LParen | Tok::TouchParen => {
                 let is_atom = match self.kind(at + 1) {
                     Some(Tok::Atom) => true,
                     Some(Tok::Name(name)) => self.is_atom(at + 1, name),
                     Some(_) | None => false,
                 };
-                self.open.push(if is_atom { Open::Atom } else { Open::Parenthesis });
+                self.open.push(if is_atom { OpenDelimiter::Atom } else { OpenDelimiter::Parenthesis });
             }
-            Tok::RParen => self.close(&[Open::Parenthesis, Open::Atom]),
-            Tok::RBracket if self.open.last() == Some(&Open::Bracket) => {
+            Tok::RParen => self.close(&[OpenDelimiter::Parenthesis, OpenDelimiter::Atom]),
+            Tok::RBracket if self.open.last() == Some(&OpenDelimiter::Bracket) => {
                 kind = Tok::RParen;
-                self.close(&[Open::Bracket]);
+                self.close(&[OpenDelimiter::Bracket]);
             }
             Tok::RBrace => {
-                if self.open.last() == Some(&Open::Rewritten) {
+                if self.open.last() == Some(&OpenDelimiter::Rewritten) {
                     kind = Tok::RParen;
                 }
-                self.close(&[Open::Brace, Open::Rewritten]);
+                self.close(&[OpenDelimiter::Brace, OpenDelimiter::Rewritten]);
             }
             _ => {}
         }
@@ -193,7 +193,7 @@ impl<'s> Rewriting<'_, 's> {
         at + 1
     }
 
-    fn close(&mut self, kinds: &[Open]) {
+    fn close(&mut self, kinds: &[OpenDelimiter]) {
         if self.open.last().is_some_and(|open| kinds.contains(open)) {
             self.open.pop();
         }
@@ -217,19 +217,19 @@ impl<'s> Rewriting<'_, 's> {
             self.push(Tok::Atom, place);
             let paren = self.old.get(at + 1)?.place;
             self.push(Tok::LParen, paren);
-            self.open.push(Open::Parenthesis);
+            self.open.push(OpenDelimiter::Parenthesis);
             return Some(at + 2);
         }
         if matches!(name, "import" | "include" | "require") && self.open.is_empty() {
             return self.import(at);
         }
-        let is_plan_name = self.before(at, 1) == Some(Tok::LBrace) && self.open.last() == Some(&Open::Brace);
+        let is_plan_name = self.before(at, 1) == Some(Tok::LBrace) && self.open.last() == Some(&OpenDelimiter::Brace);
         let is_loop_body = matches!(self.before(at, 2), Some(Tok::Number(_) | Tok::Infinity | Tok::Name(_)))
             && self.before(at, 3) == Some(Tok::ExecPlan);
-        let inside = self.open.iter().rev().take_while(|open| **open != Open::Brace);
+        let inside = self.open.iter().rev().take_while(|open| **open != OpenDelimiter::Brace);
         if is_plan_name && !is_loop_body
             || self.open.is_empty()
-            || inside.into_iter().any(|open| matches!(open, Open::Atom | Open::Bracket))
+            || inside.into_iter().any(|open| matches!(open, OpenDelimiter::Atom | OpenDelimiter::Bracket))
         {
             return None;
         }
@@ -291,7 +291,7 @@ impl<'s> Rewriting<'_, 's> {
         }
         let place = self.place(next, next);
         self.push(Tok::LParen, place);
-        self.open.push(Open::Rewritten);
+        self.open.push(OpenDelimiter::Rewritten);
         next + 1
     }
 
@@ -320,7 +320,7 @@ impl<'s> Rewriting<'_, 's> {
         };
         self.report(opener, diagnostic);
         self.push(Tok::LParen, opener);
-        self.open.push(Open::Bracket);
+        self.open.push(OpenDelimiter::Bracket);
         Some(at + 1)
     }
 

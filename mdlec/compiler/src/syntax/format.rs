@@ -14,7 +14,7 @@ use super::tree::{Element, File, Plan, Primary};
 use super::{arena_for, parse, printed};
 use crate::diagnostic::{Diagnostic, SourceId, Span, has_errors};
 use comments::Before;
-use lines::Lines;
+use lines::FormattedLines;
 use pieces::Pieces;
 
 /// Maximum width of a line, in columns; only text that cannot be broken is wider.
@@ -38,7 +38,8 @@ pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     let arena = arena_for(&text);
     let (file, _) = parse(id, &text, &arena);
     let source = FileText::new(id, &text);
-    let mut layout = Layout { id: source.id, pieces: Pieces::of(source), at: 0, lines: Lines::default(), depth: 0 };
+    let mut layout =
+        Layout { id: source.id, pieces: Pieces::of(source), at: 0, lines: FormattedLines::default(), depth: 0 };
     layout.file(&file);
     Ok(layout.lines.text())
 }
@@ -49,7 +50,7 @@ struct Layout<'s> {
     pieces: Pieces<'s>,
     /// Index of the next piece.
     at: usize,
-    lines: Lines,
+    lines: FormattedLines,
     depth: usize,
 }
 

@@ -15,7 +15,7 @@ pub(super) enum BraceEnd {
 }
 
 /// An open brace.
-struct Open {
+struct OpenBrace {
     brace: usize,
     /// Indentation of the brace's line, in characters.
     indentation: usize,
@@ -27,7 +27,7 @@ struct Open {
 /// the line of the brace, although a line between the two lines is.
 pub(super) fn ends(source: FileText<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, BraceEnd> {
     let mut ends = BTreeMap::new();
-    let mut open: Vec<Open> = Vec::new();
+    let mut open: Vec<OpenBrace> = Vec::new();
     let mut indentation = 0;
     for (at, token) in tokens.iter().enumerate() {
         let first_of_line = indentation_of(source, token.place.start);
@@ -47,7 +47,7 @@ pub(super) fn ends(source: FileText<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize
         }
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no braces")]
         match token.kind {
-            Tok::LBrace => open.push(Open { brace: at, indentation, is_deeper: false }),
+            Tok::LBrace => open.push(OpenBrace { brace: at, indentation, is_deeper: false }),
             Tok::RBrace => drop(open.pop()),
             _ => {}
         }

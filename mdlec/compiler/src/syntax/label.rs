@@ -7,7 +7,7 @@ use logos::{Lexer, Logos};
 
 /// A part of a label. The lexer of plans does not have these parts, because they would make it several times as large.
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
-enum Part {
+enum LabelPart {
     #[regex(r"[\p{L}\p{M}\p{Nd}_]+")]
     Word,
     #[regex(r"\s+")]
@@ -34,38 +34,38 @@ pub(super) fn label_length(text: &str) -> Option<usize> {
 /// Returns the length in bytes of the name at the start of `text`: a word, or words in braces, which may be the braces
 /// of `\text`.
 fn name_length(text: &str) -> Option<usize> {
-    let mut parts = Part::lexer(text);
+    let mut parts = LabelPart::lexer(text);
     match parts.next()?.ok()? {
-        Part::Word => return Some(parts.span().end),
-        Part::Open => {}
-        Part::Space | Part::Text | Part::Close | Part::Caret => return None,
+        LabelPart::Word => return Some(parts.span().end),
+        LabelPart::Open => {}
+        LabelPart::Space | LabelPart::Text | LabelPart::Close | LabelPart::Caret => return None,
     }
     let mut words = 0;
     let mut next = parts.next()?.ok()?;
     // A space before `\text` does not belong to the words.
     let mut ahead = parts.clone();
-    if next == Part::Space && follows(&mut ahead, Part::Text) {
-        (parts, next) = (ahead, Part::Text);
+    if next == LabelPart::Space && follows(&mut ahead, LabelPart::Text) {
+        (parts, next) = (ahead, LabelPart::Text);
     }
-    if next == Part::Text {
+    if next == LabelPart::Text {
         next = parts.next()?.ok()?;
     }
-    while matches!(next, Part::Word | Part::Space) {
+    while matches!(next, LabelPart::Word | LabelPart::Space) {
         words += 1;
         next = parts.next()?.ok()?;
     }
-    (words > 0 && next == Part::Close).then(|| {
+    (words > 0 && next == LabelPart::Close).then(|| {
         let one = parts.span().end;
         let mut second = parts.clone();
         let closes = match second.next() {
-            Some(Ok(Part::Space)) => follows(&mut second, Part::Close),
-            other => other == Some(Ok(Part::Close)),
+            Some(Ok(LabelPart::Space)) => follows(&mut second, LabelPart::Close),
+            other => other == Some(Ok(LabelPart::Close)),
         };
         if closes { second.span().end } else { one }
     })
 }
 
-fn follows(parts: &mut Lexer<'_, Part>, part: Part) -> bool {
+fn follows(parts: &mut Lexer<'_, LabelPart>, part: LabelPart) -> bool {
     parts.next() == Some(Ok(part))
 }
 

@@ -16,7 +16,7 @@ use super::tree::{
     Arg, Atom, Call, Condition, ConditionNode, Count, Element, Exec, File, Formal, Frame, Marks, Name, Number, Param,
     Plan, Primary, Spanned,
 };
-use super::waiting::{First, Waiting, complete};
+use super::waiting::{First, WaitingNodes, complete};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
 /// An error from which the parser has recovered.
@@ -41,7 +41,7 @@ pub(super) struct Nodes<'t, 's> {
     /// Doc comments, each with the index of the token that follows it.
     docs: &'t [(usize, &'s str)],
     /// Nodes of lists that are not complete yet.
-    pub(super) waiting: Waiting<'s>,
+    pub(super) waiting: WaitingNodes<'s>,
     /// Tree of the file.
     pub(super) file: File<'s>,
     /// Errors from which the parser has recovered, in the order of the text.
@@ -58,7 +58,7 @@ impl<'t, 's> Nodes<'t, 's> {
         tokens: &'t [Token<'s>],
         docs: &'t [(usize, &'s str)],
     ) -> Self {
-        let (waiting, file) = (Waiting::new(), File::default());
+        let (waiting, file) = (WaitingNodes::new(), File::default());
         Self { source, arena, tokens, docs, waiting, file, errors: Vec::new(), empty: Vec::new() }
     }
 

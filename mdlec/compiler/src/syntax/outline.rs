@@ -7,18 +7,18 @@ use super::tree::{
 /// Returns the outline of a file, indented by two spaces for each level.
 #[must_use]
 pub fn outline(file: &File<'_>) -> String {
-    let mut outline = Outline { text: String::new(), depth: 0 };
+    let mut outline = OutlineText { text: String::new(), depth: 0 };
     file.uses.iter().for_each(|used| outline.line(&format!("use {:?}", used.node)));
     file.plans.iter().for_each(|plan| outline.plan(plan));
     outline.text
 }
 
-struct Outline {
+struct OutlineText {
     text: String,
     depth: usize,
 }
 
-impl Outline {
+impl OutlineText {
     fn line(&mut self, line: &str) {
         self.text += &format!("{:indent$}{line}\n", "", indent = 2 * self.depth);
     }

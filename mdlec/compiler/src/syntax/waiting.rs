@@ -9,7 +9,7 @@ use crate::diagnostic::Span;
 pub(super) type First = usize;
 
 /// Stacks of waiting nodes in the order of the text; a nested list is complete before the enclosing list.
-pub(super) struct Waiting<'s> {
+pub(super) struct WaitingNodes<'s> {
     pub(super) args: Vec<Arg<'s>>,
     pub(super) conditions: Vec<Condition<'s>>,
     pub(super) elements: Vec<Element<'s>>,
@@ -23,7 +23,7 @@ pub(super) fn complete<'s, T: Copy>(waiting: &mut Vec<T>, first: First, arena: &
     list
 }
 
-impl<'s> Waiting<'s> {
+impl<'s> WaitingNodes<'s> {
     /// Returns empty stacks with room for the waiting nodes of most plans.
     pub(super) fn new() -> Self {
         Self {

@@ -5,19 +5,19 @@ use mdle_runtime::{
     Begin, Cause, Cursor, Ending, Fsm, Here, Measured, Nanometers, Nanos, Pose, Stamp, Stamps, Transition, Turn, Watch,
 };
 
-use super::{Applied, Fired, Machine, Reports, TurnResult};
+use super::{Fired, Machine, Reports, ScriptedInput, TurnResult};
 use crate::fsm;
 use crate::plan::{Interrupt, QuarkId, RecordId, Situation};
 
 /// A run of a lowered plan.
 #[derive(Debug)]
-pub struct Counted<'p> {
+pub struct CountedRun<'p> {
     plan_machine: &'p fsm::Machine,
     /// The machine; `None` before the first turn, because the machine needs the output of that turn to begin.
     machine: Option<mdle_runtime::Machine<Scripted<'p>>>,
 }
 
-impl<'p> Counted<'p> {
+impl<'p> CountedRun<'p> {
     /// Creates the machine, before its first turn.
     #[must_use]
     pub fn new(plan_machine: &'p fsm::Machine) -> Self {
@@ -47,32 +47,32 @@ impl<'p> Counted<'p> {
     }
 }
 
-impl<'p> Machine<'p> for Counted<'p> {
+impl<'p> Machine<'p> for CountedRun<'p> {
     fn turn(&mut self, reports: &Reports) -> TurnResult<'p> {
         let plan_machine = self.plan_machine;
         let begin = || mdle_runtime::Machine::begin(Scripted::new(plan_machine), reports, reports.t);
         let machine = self.machine.get_or_insert_with(begin);
-        let mut transitions = Transitions { plan_machine, operands: Vec::new(), fired: Vec::new() };
+        let mut transitions = TransitionRecorder { plan_machine, operands: Vec::new(), fired: Vec::new() };
         let turn = machine.turn(reports, reports.t, &mut transitions);
         let applied = match (turn, machine.atom()) {
-            (Turn::Law(()), Some(atom)) => Applied::Law(&plan_machine.atom(atom).law().text),
-            (Turn::Cut, _) => Applied::Cut,
-            (Turn::Over, _) | (Turn::Law(()), None) => Applied::Over,
+            (Turn::Law(()), Some(atom)) => ScriptedInput::Law(&plan_machine.atom(atom).law().text),
+            (Turn::Cut, _) => ScriptedInput::Cut,
+            (Turn::Over, _) | (Turn::Law(()), None) => ScriptedInput::Over,
         };
-        let frame = machine.frame().filter(|_| matches!(applied, Applied::Law(_)));
+        let frame = machine.frame().filter(|_| matches!(applied, ScriptedInput::Law(_)));
         TurnResult { state: machine.state(), applied, frame, fired: transitions.fired }
     }
 }
 
 /// Records the transitions of a turn.
-struct Transitions<'p> {
+struct TransitionRecorder<'p> {
     plan_machine: &'p fsm::Machine,
     /// Numbers of the operands that fired for the next transition.
     operands: Vec<usize>,
     fired: Vec<Fired<'p>>,
 }
 
-impl Watch for Transitions<'_> {
+impl Watch for TransitionRecorder<'_> {
     fn operand(&mut self, number: u32, _: Measured) {
         self.operands.push(number as usize);
     }
@@ -110,17 +110,17 @@ struct Scripted<'p> {
 /// The entries of a plan's scopes.
 type Entered<'p> = Stamps<Box<[Stamp]>, &'p [Option<Here>]>;
 
-type At<'p> = Cursor<Entered<'p>, Box<[u64]>>;
+type CountedCursor<'p> = Cursor<Entered<'p>, Box<[u64]>>;
 
 /// Situation of a condition: a scope's level in the current state, with the reports of the turn.
-struct Read<'r, 'p> {
+struct LevelSituation<'r, 'p> {
     scripted: &'r Scripted<'p>,
-    cursor: &'r At<'r>,
+    cursor: &'r CountedCursor<'r>,
     level: u16,
     y: &'r Reports,
 }
 
-impl Situation for Read<'_, '_> {
+impl Situation for LevelSituation<'_, '_> {
     fn quark(&self, quark: QuarkId) -> bool {
         self.y.fired.contains(&self.scripted.plan_machine.quark(quark).text)
     }
@@ -156,16 +156,16 @@ impl<'p> Scripted<'p> {
 
     /// Returns the level and the interrupt of the scopes that enclose the current atom, from the atom's own
     /// scope outwards.
-    fn scopes(&self, cursor: &At) -> impl Iterator<Item = (u16, &'p Interrupt)> + use<'p> {
+    fn scopes(&self, cursor: &CountedCursor) -> impl Iterator<Item = (u16, &'p Interrupt)> + use<'p> {
         let own = self.plan_machine.atom(cursor.atom()).element();
         own.outwards().filter_map(|element| Some((element.level()?, element.interrupt()?)))
     }
 
     /// Returns the cause of the next transition: the outermost interrupt that has fired, or else the completion of the
     /// law; `None` if neither has happened.
-    fn ending(&self, cursor: &At<'_>, y: &Reports) -> Option<Cause> {
+    fn ending(&self, cursor: &CountedCursor<'_>, y: &Reports) -> Option<Cause> {
         let fired = |(level, interrupt): &(u16, &Interrupt)| {
-            interrupt.condition.fired(&Read { scripted: self, cursor, level: *level, y })
+            interrupt.condition.fired(&LevelSituation { scripted: self, cursor, level: *level, y })
         };
         // The scopes are in order from the inside outwards, so the last match is the outermost.
         let outermost = self.scopes(cursor).filter(fired).last().map(|(level, _)| Cause::Fired(level));
@@ -173,7 +173,7 @@ impl<'p> Scripted<'p> {
     }
 
     /// Returns the completion of the current atom's law as a cause; `None` if the law has not completed.
-    fn completed(&self, cursor: &At<'_>, y: &Reports) -> Option<Cause> {
+    fn completed(&self, cursor: &CountedCursor<'_>, y: &Reports) -> Option<Cause> {
         let atom = self.plan_machine.atom(cursor.atom());
         let level = atom.element().level()?;
         (atom.law().completes && y.completed.contains(&atom.law().text)).then_some(Cause::Completed(level))
@@ -181,14 +181,14 @@ impl<'p> Scripted<'p> {
 
     /// Records the labelled elements that end with the scope of this cause, and clears the records of nested
     /// scopes.
-    fn record(&mut self, cursor: &At<'_>, cause: Cause, y: &Reports) {
+    fn record(&mut self, cursor: &CountedCursor<'_>, cause: Cause, y: &Reports) {
         let level = cause.level();
         let operand = match cause {
             Cause::Completed(_) => None,
             Cause::Fired(_) => self
                 .scopes(cursor)
                 .find(|(here, _)| *here == level)
-                .map(|(_, interrupt)| interrupt.condition.cause(&Read { scripted: self, cursor, level, y })),
+                .map(|(_, interrupt)| interrupt.condition.cause(&LevelSituation { scripted: self, cursor, level, y })),
         };
         let mut outermost = level;
         let (mut records, mut facts) = (Vec::new(), Vec::new());
@@ -232,23 +232,23 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
 
     fn enter(&mut self, _: u32, _: &Reports, _: Begin) {}
 
-    fn next(&self, cursor: &At<'p>, y: &Reports, _: Nanos) -> Option<Ending> {
+    fn next(&self, cursor: &CountedCursor<'p>, y: &Reports, _: Nanos) -> Option<Ending> {
         self.ending(cursor, y).map(Ending::from)
     }
 
-    fn leave(&mut self, cursor: &At<'p>, cause: Cause, y: &Reports, _: Nanos) {
+    fn leave(&mut self, cursor: &CountedCursor<'p>, cause: Cause, y: &Reports, _: Nanos) {
         if self.plan_machine.sizes().memories > 0 {
             self.record(cursor, cause, y);
         }
     }
 
-    fn settle(&mut self, cursor: &At<'p>, y: &Reports, _: Nanos) {
+    fn settle(&mut self, cursor: &CountedCursor<'p>, y: &Reports, _: Nanos) {
         if self.plan_machine.sizes().memories == 0 {
             return;
         }
         let mut set = Vec::new();
         for (level, interrupt) in self.scopes(cursor) {
-            let read = Read { scripted: self, cursor, level, y };
+            let read = LevelSituation { scripted: self, cursor, level, y };
             interrupt.condition.each_rising(&mut |memory, operand| {
                 if !operand.fired(&read) {
                     set.push(self.place(level, memory));
@@ -258,10 +258,17 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
         set.into_iter().for_each(|memory| self.memories[memory] = true);
     }
 
-    fn operands(&self, cursor: &At<'p>, scope: u32, y: &Reports, _: Nanos, tell: &mut dyn FnMut(u32, Measured)) {
+    fn operands(
+        &self,
+        cursor: &CountedCursor<'p>,
+        scope: u32,
+        y: &Reports,
+        _: Nanos,
+        tell: &mut dyn FnMut(u32, Measured),
+    ) {
         let element = self.plan_machine.element(scope);
         let (Some(level), Some(interrupt)) = (element.level(), element.interrupt()) else { return };
-        let read = Read { scripted: self, cursor, level, y };
+        let read = LevelSituation { scripted: self, cursor, level, y };
         let operands = (0..).zip(interrupt.condition.joined());
         operands.filter(|(_, part)| part.fired(&read)).for_each(|(number, _)| tell(number, Measured::Nothing));
     }

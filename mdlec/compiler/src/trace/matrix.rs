@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 
-use super::{Applied, COMPLETED, EntryTime, Fired, Machine, Reports, TurnResult};
+use super::{COMPLETED, EntryTime, Fired, Machine, Reports, ScriptedInput, TurnResult};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Matrices, Transition, UnitVector, matrices};
 use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};
@@ -46,13 +46,13 @@ struct Factor<'p> {
 }
 
 /// Situation of an interrupt's condition: the state of the product, with the reports of the turn.
-struct At<'t, 'p> {
+struct ProductSituation<'t, 'p> {
     product: &'t MatrixProduct<'p>,
     number: usize,
     y: &'t Reports,
 }
 
-impl Situation for At<'_, '_> {
+impl Situation for ProductSituation<'_, '_> {
     fn quark(&self, quark: QuarkId) -> bool {
         self.y.fired.contains(&self.product.plan.quark(quark).text)
     }
@@ -99,7 +99,8 @@ impl<'p> MatrixProduct<'p> {
     /// `None` if neither has happened.
     fn fired(&self, y: &Reports) -> Option<Factor<'p>> {
         for number in self.listed() {
-            let (interrupt, at) = (self.matrices.transitions[number].interrupt, At { product: self, number, y });
+            let (interrupt, at) =
+                (self.matrices.transitions[number].interrupt, ProductSituation { product: self, number, y });
             if interrupt.condition.fired(&at) {
                 let operands = self.plan.operands_fired(interrupt, &at);
                 return Some(Factor {
@@ -154,7 +155,7 @@ impl<'p> MatrixProduct<'p> {
     fn settle(&mut self, y: &Reports) {
         let mut set = Vec::new();
         for number in self.listed() {
-            let at = At { product: self, number, y };
+            let at = ProductSituation { product: self, number, y };
             self.matrices.transitions[number].interrupt.condition.each_rising(&mut |memory, operand| {
                 if !operand.fired(&at) {
                     set.push((number, memory));
@@ -179,13 +180,13 @@ impl<'p> Machine<'p> for MatrixProduct<'p> {
         while let Some(Factor { number, by, operands, operand }) = self.fired(y) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(y);
-                return TurnResult { state: self.state(), applied: Applied::Cut, frame: None, fired };
+                return TurnResult { state: self.state(), applied: ScriptedInput::Cut, frame: None, fired };
             }
             fired.push(Fired { from: self.state(), level: self.matrices.transitions[number].level, by, operands });
             self.multiply(number, operand, y.moment());
         }
         self.settle(y);
-        let applied = self.law().map_or(Applied::Over, |law| Applied::Law(&law.text));
+        let applied = self.law().map_or(ScriptedInput::Over, |law| ScriptedInput::Law(&law.text));
         TurnResult { state: self.state(), applied, frame: self.frame(), fired }
     }
 }

@@ -8,13 +8,13 @@ mod table;
 mod tree;
 mod write;
 
-pub use counted::Counted;
+pub use counted::CountedRun;
 pub use matrix::MatrixProduct;
 use script::EntryTime;
 pub use script::{Reports, Script, ScriptError};
 pub use table::TableMachine;
-pub use tree::{OpenPart, Step, Tree};
-pub use write::{Applied, COMPLETED, Fired, TraceLine, TurnResult};
+pub use tree::{OpenPart, TreeStep, TreeWalk};
+pub use write::{COMPLETED, Fired, ScriptedInput, TraceLine, TurnResult};
 
 /// An interpreter of a plan.
 pub trait Machine<'p> {
@@ -30,7 +30,7 @@ pub fn run<'p, 's>(mut machine: impl Machine<'p> + 's, script: &'s Script) -> im
             return None;
         }
         let outcome = machine.turn(reports);
-        over = outcome.applied == Applied::Over;
+        over = outcome.applied == ScriptedInput::Over;
         Some(TraceLine { turn, t: reports.t, outcome })
     })
 }

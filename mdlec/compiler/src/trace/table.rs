@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use mdle_runtime::TRANSITIONS_PER_TURN;
 
-use super::{Applied, COMPLETED, EntryTime, Fired, Machine, Reports, TurnResult};
+use super::{COMPLETED, EntryTime, Fired, Machine, Reports, ScriptedInput, TurnResult};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::expanded_states;
 use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Plan, Quark, QuarkId, Record, RecordId, Scope, Situation};
@@ -21,9 +21,9 @@ pub struct TableMachine<'p> {
     /// States except the termination state, in order.
     states: Vec<AtomState<'p>>,
     /// Interrupts, numbered in pre-order: a scope before its elements.
-    rows: Vec<Row<'p>>,
+    rows: Vec<InterruptRow<'p>>,
     /// For each row, the memory of its scope since the scope was entered.
-    memories: Vec<Memory>,
+    memories: Vec<ScopeMemory>,
     /// For each record, a list with `true` for each fact that holds.
     records: BTreeMap<RecordId, Vec<bool>>,
     /// Index of the current state in `states`; the length of `states` when the plan has ended.
@@ -47,14 +47,14 @@ struct AtomState<'p> {
 
 /// An interrupt with its destination and its labels.
 #[derive(Debug)]
-struct Row<'p> {
+struct InterruptRow<'p> {
     interrupt: &'p Interrupt,
     level: usize,
     /// Row of the enclosing scope; `None` for the plan itself.
     around: Option<usize>,
     /// Record that is kept with the row's scope; `None` if the scope has no record.
     record: Option<Record>,
-    next: Next,
+    next: RowDestination,
     /// Labels of the row's scope. `ends_with` holds the labels of the elements that end with this scope, because it is
     /// their last element.
     marks: &'p [Mark],
@@ -63,7 +63,7 @@ struct Row<'p> {
 
 /// Destination of an interrupt.
 #[derive(Debug, Clone)]
-struct Next {
+struct RowDestination {
     state: usize,
     /// Range of the rows whose scopes restart: scopes that open together form a range, since rows are in
     /// pre-order.
@@ -72,7 +72,7 @@ struct Next {
 
 /// Memory of a scope since it was entered.
 #[derive(Debug, Clone)]
-struct Memory {
+struct ScopeMemory {
     entered: EntryTime,
     /// Memories of RISING in the scope's interrupt.
     rising: Vec<bool>,
@@ -88,13 +88,13 @@ struct FiredRow<'p> {
 }
 
 /// Situation of a row's condition: the table and the row's memory, with the reports of the turn.
-struct Reading<'t, 'p> {
+struct RowSituation<'t, 'p> {
     table: &'t TableMachine<'p>,
-    memory: &'t Memory,
+    memory: &'t ScopeMemory,
     reports: &'t Reports,
 }
 
-impl Situation for Reading<'_, '_> {
+impl Situation for RowSituation<'_, '_> {
     fn quark(&self, quark: QuarkId) -> bool {
         self.reports.fired.contains(&self.table.plan.quark(quark).text)
     }
@@ -127,11 +127,11 @@ impl<'p> TableMachine<'p> {
         let mut filling = Filling { plan, states: Vec::new(), rows: Vec::new(), ended: Vec::new(), begun: None };
         filling.scope(&plan.root, None, None);
         // The interrupts that end the plan lead to the state after its last state, where no scope restarts.
-        filling.lead_to(&Next { state: filling.states.len(), afresh: 0..0 });
+        filling.lead_to(&RowDestination { state: filling.states.len(), afresh: 0..0 });
         let Filling { states, rows, .. } = filling;
-        let fresh = |row: &Row<'_>| {
+        let fresh = |row: &InterruptRow<'_>| {
             let rising = vec![false; row.interrupt.memories as usize];
-            Memory { entered: EntryTime::default(), rising }
+            ScopeMemory { entered: EntryTime::default(), rising }
         };
         let records = rows.iter().filter_map(|row| row.record).map(|record| (record.id, empty(record))).collect();
         Ok(Self { plan, memories: rows.iter().map(fresh).collect(), records, states, rows, state: 0, has_begun: false })
@@ -143,8 +143,8 @@ impl<'p> TableMachine<'p> {
         std::iter::successors(own, |row| self.rows[*row].around)
     }
 
-    fn reading<'t>(&'t self, row: usize, reports: &'t Reports) -> Reading<'t, 'p> {
-        Reading { table: self, memory: &self.memories[row], reports }
+    fn reading<'t>(&'t self, row: usize, reports: &'t Reports) -> RowSituation<'t, 'p> {
+        RowSituation { table: self, memory: &self.memories[row], reports }
     }
 
     /// Returns the outermost interrupt that has fired, or else the completion of the law; `None` if neither has
@@ -164,7 +164,7 @@ impl<'p> TableMachine<'p> {
 
     fn follow(&mut self, ending: &FiredRow<'p>, now: EntryTime) {
         self.record(ending);
-        let Next { state, afresh } = self.rows[ending.row].next.clone();
+        let RowDestination { state, afresh } = self.rows[ending.row].next.clone();
         for row in afresh {
             let memory = &mut self.memories[row];
             memory.entered = now;
@@ -178,7 +178,7 @@ impl<'p> TableMachine<'p> {
 
     /// Replaces the records whose labelled elements end with this row.
     fn record(&mut self, ending: &FiredRow<'p>) {
-        let Row { marks, ends_with, .. } = &self.rows[ending.row];
+        let InterruptRow { marks, ends_with, .. } = &self.rows[ending.row];
         let own = marks.iter().map(|mark| (mark, ending.operand));
         let ended = || own.clone().chain(ends_with.iter().map(|mark| (*mark, None)));
         for (mark, _) in ended() {
@@ -222,7 +222,7 @@ impl<'p> Machine<'p> for TableMachine<'p> {
         while let Some(mut ending) = self.fired(reports) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(reports);
-                return TurnResult { state: self.number(), applied: Applied::Cut, frame: None, fired };
+                return TurnResult { state: self.number(), applied: ScriptedInput::Cut, frame: None, fired };
             }
             let operands = std::mem::take(&mut ending.operands);
             fired.push(Fired { from: self.number(), level: self.rows[ending.row].level, by: ending.by, operands });
@@ -230,7 +230,7 @@ impl<'p> Machine<'p> for TableMachine<'p> {
         }
         self.settle(reports);
         let state = self.states.get(self.state);
-        let applied = state.map_or(Applied::Over, |state| Applied::Law(&state.law.text));
+        let applied = state.map_or(ScriptedInput::Over, |state| ScriptedInput::Law(&state.law.text));
         let frame = state.and_then(|state| Some(self.memories[state.here?].entered.frame(state.turned)));
         TurnResult { state: self.number(), applied, frame, fired }
     }
@@ -245,7 +245,7 @@ fn empty(record: Record) -> Vec<bool> {
 struct Filling<'p> {
     plan: &'p Plan,
     states: Vec<AtomState<'p>>,
-    rows: Vec<Row<'p>>,
+    rows: Vec<InterruptRow<'p>>,
     /// Rows of the scopes that have just ended; these rows lead to the next state.
     ended: Vec<usize>,
     /// First row of the scopes that have begun since the last atom; `None` directly after an atom.
@@ -268,7 +268,7 @@ impl<'p> Filling<'p> {
                 Node::Atom(atom) => {
                     let own = self.row(&atom.interrupt, Some(around), &atom.marks);
                     let from = self.begun.take().unwrap_or(own);
-                    self.lead_to(&Next { state: self.states.len(), afresh: from..own + 1 });
+                    self.lead_to(&RowDestination { state: self.states.len(), afresh: from..own + 1 });
                     let here = if atom.here { Some(own) } else { here };
                     self.states.push(AtomState { law: self.plan.quark(atom.law), own, turned: atom.frame, here });
                     self.ended.push(own);
@@ -291,7 +291,7 @@ impl<'p> Filling<'p> {
         let (state, from) = (self.states.len(), self.rows.len());
         self.sequence(body, around, here);
         let own = self.states[state].own;
-        self.lead_to(&Next { state, afresh: from..own + 1 });
+        self.lead_to(&RowDestination { state, afresh: from..own + 1 });
     }
 
     /// Appends the row of a scope or an atom, and returns the number of the row.
@@ -299,8 +299,8 @@ impl<'p> Filling<'p> {
         let row = self.rows.len();
         let level = around.map_or(0, |around| self.rows[around].level + 1);
         self.begun.get_or_insert(row);
-        let (next, ends_with) = (Next { state: 0, afresh: 0..0 }, Vec::new());
-        self.rows.push(Row { interrupt, level, around, record: None, next, marks, ends_with });
+        let (next, ends_with) = (RowDestination { state: 0, afresh: 0..0 }, Vec::new());
+        self.rows.push(InterruptRow { interrupt, level, around, record: None, next, marks, ends_with });
         row
     }
 
@@ -311,7 +311,7 @@ impl<'p> Filling<'p> {
         }
     }
 
-    fn lead_to(&mut self, next: &Next) {
+    fn lead_to(&mut self, next: &RowDestination) {
         for row in self.ended.drain(..) {
             self.rows[row].next = next.clone();
         }

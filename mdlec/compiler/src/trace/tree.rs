@@ -7,28 +7,28 @@ mod steps;
 use std::sync::Arc;
 
 use mdle_runtime::Frame;
-pub use steps::{OpenPart, Step};
+pub use steps::{OpenPart, TreeStep};
 
-use super::{Applied, COMPLETED, EntryTime, Fired, Machine, Reports, TurnResult};
+use super::{COMPLETED, EntryTime, Fired, Machine, Reports, ScriptedInput, TurnResult};
 use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Scope, Situation};
 
 /// A walk over a plan.
 #[derive(Debug, Clone)]
-pub struct Tree<'p> {
+pub struct TreeWalk<'p> {
     plan: &'p Plan,
     /// Scopes, loops and atoms of the plan: the plan itself first, and each element before its nested elements. The
     /// list is flat because a plan may be nested more deeply than the stack allows for recursion.
-    elements: Arc<[Element<'p>]>,
+    elements: Arc<[TreeElement<'p>]>,
     /// Open elements, outermost first; the last is the current atom. Empty before the first turn and after the plan has
     /// ended.
-    open: Vec<Open>,
+    open: Vec<EnteredElement>,
     /// `true` from the first turn on.
     has_begun: bool,
 }
 
 /// A scope, a loop or an atom.
 #[derive(Debug)]
-struct Element<'p> {
+struct TreeElement<'p> {
     kind: NodeKind<'p>,
     /// Nodes of the body.
     body: &'p [Node],
@@ -47,7 +47,7 @@ enum NodeKind<'p> {
 
 /// An element that has been entered.
 #[derive(Debug, Clone)]
-struct Open {
+struct EnteredElement {
     element: usize,
     entered: EntryTime,
     /// Index, in the body, of the nested element that is open.
@@ -78,13 +78,13 @@ struct EndedScope<'p> {
 }
 
 /// Situation of a condition: an open element, with the reports of the turn.
-struct Read<'t, 'p> {
-    tree: &'t Tree<'p>,
-    open: &'t Open,
+struct ElementSituation<'t, 'p> {
+    tree: &'t TreeWalk<'p>,
+    open: &'t EnteredElement,
     reports: &'t Reports,
 }
 
-impl Situation for Read<'_, '_> {
+impl Situation for ElementSituation<'_, '_> {
     fn quark(&self, quark: QuarkId) -> bool {
         self.reports.fired.contains(&self.tree.plan.quark(quark).text)
     }
@@ -107,7 +107,7 @@ impl Situation for Read<'_, '_> {
     }
 }
 
-impl<'p> Tree<'p> {
+impl<'p> TreeWalk<'p> {
     /// Returns the walk before its first turn.
     #[must_use]
     pub fn new(plan: &'p Plan) -> Self {
@@ -118,14 +118,14 @@ impl<'p> Tree<'p> {
     fn enter(&mut self, element: usize, first: u64, entered: EntryTime) {
         let mut next = Some(element);
         while let Some(element) = next {
-            let Element { kind, body, held, .. } = self.elements[element];
+            let TreeElement { kind, body, held, .. } = self.elements[element];
             let memories = kind.interrupt().map_or(0, |interrupt| interrupt.memories as usize);
             let facts = match kind {
                 NodeKind::Scope(Scope { record: Some(record), .. }) => record.facts as usize,
                 NodeKind::Scope(_) | NodeKind::Loop(_) | NodeKind::Atom(_) => 0,
             };
             let (memories, facts) = (vec![false; memories], vec![false; facts]);
-            self.open.push(Open { element, entered, index: 0, pass: 1, first, here: first, memories, facts });
+            self.open.push(EnteredElement { element, entered, index: 0, pass: 1, first, here: first, memories, facts });
             next = (!body.is_empty()).then_some(held);
         }
     }
@@ -136,7 +136,7 @@ impl<'p> Tree<'p> {
         let mut level = 0;
         for (place, open) in self.open.iter().enumerate() {
             let Some(interrupt) = self.elements[open.element].kind.interrupt() else { continue };
-            let read = Read { tree: self, open, reports };
+            let read = ElementSituation { tree: self, open, reports };
             if interrupt.condition.fired(&read) {
                 let operand = Some(interrupt.condition.cause(&read));
                 let operands = self.plan.operands_fired(interrupt, &read);
@@ -155,7 +155,7 @@ impl<'p> Tree<'p> {
             let open = &self.open[place];
             let mut low = Vec::new();
             if let Some(interrupt) = self.elements[open.element].kind.interrupt() {
-                let read = Read { tree: self, open, reports };
+                let read = ElementSituation { tree: self, open, reports };
                 interrupt.condition.each_rising(&mut |memory, operand| {
                     if !operand.fired(&read) {
                         low.push(memory as usize);
@@ -196,7 +196,7 @@ impl<'p> Tree<'p> {
         ended.push((first.marks(), ending.operand));
         self.open.truncate(ending.place);
         while let Some(open) = self.open.last_mut() {
-            let Element { kind, body, held, states } = self.elements[open.element];
+            let TreeElement { kind, body, held, states } = self.elements[open.element];
             if open.index + 1 < body.len() {
                 open.here = open.here.saturating_add(self.elements[held + open.index].all_states());
                 open.index += 1;
@@ -244,15 +244,15 @@ impl<'p> Tree<'p> {
     }
 }
 
-impl<'p> Machine<'p> for Tree<'p> {
+impl<'p> Machine<'p> for TreeWalk<'p> {
     fn turn(&mut self, reports: &Reports) -> TurnResult<'p> {
         self.begin(reports);
         let mut transitions = Vec::new();
         loop {
             match self.step(reports, transitions.len()) {
-                Step::Transition { fired, .. } => transitions.push(fired),
-                Step::End(applied) => {
-                    let frame = self.frame().filter(|_| matches!(applied, Applied::Law(_)));
+                TreeStep::Transition { fired, .. } => transitions.push(fired),
+                TreeStep::End(applied) => {
+                    let frame = self.frame().filter(|_| matches!(applied, ScriptedInput::Law(_)));
                     return TurnResult { state: self.state(), applied, frame, fired: transitions };
                 }
             }
@@ -289,7 +289,7 @@ impl<'p> NodeKind<'p> {
     }
 }
 
-impl Element<'_> {
+impl TreeElement<'_> {
     /// Returns the record that is kept with the element; `None` if the element has no record.
     fn record(&self) -> Option<RecordId> {
         match self.kind {
@@ -308,8 +308,8 @@ impl Element<'_> {
 }
 
 /// Returns the elements of a plan, each before its nested elements; the elements of a body are consecutive.
-fn flat(root: &Scope) -> Vec<Element<'_>> {
-    let mut elements = vec![Element { kind: NodeKind::Scope(root), body: &root.body, held: 0, states: 0 }];
+fn flat(root: &Scope) -> Vec<TreeElement<'_>> {
+    let mut elements = vec![TreeElement { kind: NodeKind::Scope(root), body: &root.body, held: 0, states: 0 }];
     let mut next = 0;
     while next < elements.len() {
         elements[next].held = elements.len();
@@ -320,12 +320,12 @@ fn flat(root: &Scope) -> Vec<Element<'_>> {
                 Node::Scope(scope) => (NodeKind::Scope(scope), &scope.body, 0),
                 Node::Loop(repeated) => (NodeKind::Loop(repeated), &repeated.body, 0),
             };
-            Element { kind, body, held: 0, states }
+            TreeElement { kind, body, held: 0, states }
         }));
         next += 1;
     }
     for place in (0..elements.len()).rev() {
-        let Element { body, held, states, .. } = elements[place];
+        let TreeElement { body, held, states, .. } = elements[place];
         let inside = elements[held..held + body.len()].iter();
         elements[place].states = inside.fold(states, |sum, element| sum.saturating_add(element.all_states()));
     }

@@ -25,7 +25,7 @@ pub struct TurnResult<'p> {
     /// State at the end of the turn, numbered in the expanded plan.
     pub state: u64,
     /// Input at the end of the turn.
-    pub applied: Applied<'p>,
+    pub applied: ScriptedInput<'p>,
     /// Frame of the law, if a law is applied and its atom is inside a `FRAME here`.
     pub frame: Option<Frame>,
     /// Transitions of the turn, in order.
@@ -34,7 +34,7 @@ pub struct TurnResult<'p> {
 
 /// The input of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Applied<'p> {
+pub enum ScriptedInput<'p> {
     /// The law of this quark text.
     Law(&'p str),
     /// The null input, because the turn reached the limit of transitions.
@@ -47,8 +47,8 @@ impl fmt::Display for TraceLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let TurnResult { state, applied, frame, fired } = &self.outcome;
         let law = match applied {
-            Applied::Law(text) => Some(*text),
-            Applied::Cut | Applied::Over => None,
+            ScriptedInput::Law(text) => Some(*text),
+            ScriptedInput::Cut | ScriptedInput::Over => None,
         };
         let fired = fired.iter().cloned();
         trace::Line { turn: self.turn as u64, t: self.t, state: *state, law, frame: *frame, fired }.fmt(f)
@@ -62,7 +62,7 @@ mod tests {
     #[test]
     fn lines_look_as_the_interface_says() {
         let outcome =
-            TurnResult { state: 1, applied: Applied::Law("goAvoid 90 40 20"), frame: None, fired: Vec::new() };
+            TurnResult { state: 1, applied: ScriptedInput::Law("goAvoid 90 40 20"), frame: None, fired: Vec::new() };
         let line = TraceLine { turn: 0, t: Nanos::ZERO, outcome };
         assert_eq!(line.to_string(), r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}"#);
 
@@ -73,7 +73,7 @@ mod tests {
         let line = TraceLine {
             turn: 1,
             t: Nanos(100_000_000),
-            outcome: TurnResult { state: 9, applied: Applied::Over, frame: None, fired },
+            outcome: TurnResult { state: 9, applied: ScriptedInput::Over, frame: None, fired },
         };
         assert_eq!(
             line.to_string(),

@@ -11,7 +11,7 @@ use mdle_runtime::{Examined, Nanometers, Nanos};
 use serde_json::json;
 
 use super::export::TableWriter;
-use crate::examined::{ExaminedRun, ExaminedTurn, Moment};
+use crate::examined::{ExaminedRun, ExaminedTurn, PlanMoment};
 use crate::failure::Failure;
 use crate::replay::{self, WantedPlan};
 
@@ -74,7 +74,11 @@ fn line(machine: &Machine, turn: &ExaminedTurn, way: Nanometers) -> Result<Strin
 }
 
 /// Records the values of the interrupts that are evaluated at a moment.
-fn interrupts<'m>(machine: &'m Machine, moment: &Moment, fired: &mut BTreeMap<&'m str, bool>) -> Result<(), String> {
+fn interrupts<'m>(
+    machine: &'m Machine,
+    moment: &PlanMoment,
+    fired: &mut BTreeMap<&'m str, bool>,
+) -> Result<(), String> {
     for scope in &moment.scopes {
         parts(machine, machine.element(scope.bracket).condition(), &mut scope.parts.iter(), fired)?;
     }

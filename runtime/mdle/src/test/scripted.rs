@@ -1,7 +1,7 @@
 //! Runs a plan on the script of a test, without a robot.
 
 use mdle_compiler::fsm::Machine;
-use mdle_compiler::trace::{Counted, Reports, Script};
+use mdle_compiler::trace::{CountedRun, Reports, Script};
 use mdle_host::{CauseText, Transitions};
 use mdle_runtime::Turn;
 
@@ -46,7 +46,7 @@ fn never_completes(law: &str, machine: &Machine) -> bool {
 pub(super) fn run(subject: &Subject, expected: &Expected, script: &Script, coverage: &mut Coverage) -> Course {
     let machine = subject.machine();
     let mut recorder = Recorder::new(machine);
-    let mut counted = Counted::new(machine);
+    let mut counted = CountedRun::new(machine);
     let mut transitions = Transitions::default();
     for reports in script.turns() {
         transitions.clear();
@@ -81,7 +81,7 @@ fn breaches(expected: &Expected, reports: &Reports, atom: Option<u32>, recorder:
 /// Returns `true` if the interrupt of a plan fires in its first turn.
 fn fires(machine: &Machine, reports: &Reports) -> bool {
     let mut transitions = Transitions::default();
-    Counted::new(machine).watched(reports, &mut transitions);
+    CountedRun::new(machine).watched(reports, &mut transitions);
     // The law of the plan may complete as well.
     transitions.iter().any(|(transition, _)| matches!(transition.cause, mdle_runtime::Cause::Fired(_)))
 }

@@ -9,7 +9,7 @@ use mdle_runtime::{Cause, Nanos, SONARS, Sensed, Transition, Twist};
 
 use super::operands::Facts;
 use super::scopes::{Scope, scopes};
-use crate::examined::{ExaminedPlan, ExaminedTurn, Moment};
+use crate::examined::{ExaminedPlan, ExaminedTurn, PlanMoment};
 
 /// An atom in a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -221,7 +221,7 @@ impl Explainer {
     }
 
     /// Returns the facts that operands read at a moment of a turn.
-    pub(crate) fn facts(turn: &ExaminedTurn, moment: &Moment) -> Facts {
+    pub(crate) fn facts(turn: &ExaminedTurn, moment: &PlanMoment) -> Facts {
         Facts { ages: ages(&turn.recorded.y), stalled: moment.stalled, is_new: moment.is_new() }
     }
 
@@ -278,7 +278,7 @@ impl Explainer {
         turn: &ExaminedTurn,
         plan: &ExaminedPlan,
         (transition, operands): (&Transition, &[Operand]),
-        moment: &Moment,
+        moment: &PlanMoment,
     ) -> Ended {
         let texts = &*plan.texts;
         let atom = self.atom(texts, moment.atom);
@@ -307,7 +307,7 @@ fn cut(turn: &ExaminedTurn, plan: Option<&ExaminedPlan>) -> Option<&'static str>
 
 /// Returns `true` if the law of the atom had completed when the interrupt of its scope, or of an enclosing scope, ended
 /// it.
-fn was_done(moment: &Moment, transition: &Transition) -> bool {
+fn was_done(moment: &PlanMoment, transition: &Transition) -> bool {
     moment.is_completed && matches!(transition.cause, Cause::Fired(_))
 }
 

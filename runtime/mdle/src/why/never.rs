@@ -13,7 +13,7 @@ use super::explanation::{AtomWords, Explainer};
 use super::operands::Facts;
 use super::scopes::{Scope, scopes};
 use crate::elements_named::elements_named;
-use crate::examined::{ExaminedPlan, ExaminedRun, ExaminedTurn, Moment, Stop};
+use crate::examined::{ExaminedPlan, ExaminedRun, ExaminedTurn, PlanMoment, Stop};
 
 /// A turn: its number and its time.
 pub(crate) type Turned = (u64, Nanos);
@@ -97,7 +97,7 @@ struct Door {
     /// Last turn of the latest period; `None` while the period continues.
     last: Option<Stay>,
     /// The last turn in which there was a chance, and its moment.
-    latest: (FactsOfTurn, Moment),
+    latest: (FactsOfTurn, PlanMoment),
 }
 
 /// A turn, with the facts that operands read.
@@ -235,7 +235,7 @@ impl Search {
     }
 
     /// Records that an element in question was entered, and left in the same turn.
-    fn skip(&mut self, place: FactsOfTurn, moment: &Moment, cause: &str, explainer: &mut Explainer) {
+    fn skip(&mut self, place: FactsOfTurn, moment: &PlanMoment, cause: &str, explainer: &mut Explainer) {
         let is_new =
             |bracket: &u32| moment.scopes.iter().any(|scope| scope.bracket == *bracket && scope.since == Nanos::ZERO);
         let Some(bracket) = self.wanted.iter().copied().find(is_new) else { return };
@@ -254,7 +254,7 @@ impl Search {
     }
 
     /// Records that an element in question runs or begins, which makes earlier skips and chances irrelevant.
-    fn begin(&mut self, turned: Turned, moment: &Moment, cause: &str) {
+    fn begin(&mut self, turned: Turned, moment: &PlanMoment, cause: &str) {
         let mut begins = false;
         for scope in moment.scopes.iter().filter(|scope| self.wanted.contains(&scope.bracket)) {
             self.answer.runs = true;
@@ -275,7 +275,7 @@ impl Search {
 
     /// Records the atoms to which the end of a scope would lead at this moment, and the atoms to which it no
     /// longer does.
-    fn chances(&mut self, place: FactsOfTurn, moment: &Moment, cause: &str, explainer: &mut Explainer) {
+    fn chances(&mut self, place: FactsOfTurn, moment: &PlanMoment, cause: &str, explainer: &mut Explainer) {
         let mut open: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (number, scope) in moment.scopes.iter().enumerate() {
             if let Some(atom) = scope.leads_to {
@@ -312,7 +312,7 @@ impl Search {
         }
     }
 
-    fn stay(&self, place: FactsOfTurn, moment: &Moment, cause: &str, explainer: &mut Explainer) -> Stay {
+    fn stay(&self, place: FactsOfTurn, moment: &PlanMoment, cause: &str, explainer: &mut Explainer) -> Stay {
         let scopes = scopes(&self.plan, moment, &place.facts);
         let atom = explainer.atom(&*self.plan.texts, moment.atom);
         Stay { turned: place.turned, atom, scopes, cause: cause.to_owned() }

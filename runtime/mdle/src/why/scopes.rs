@@ -3,7 +3,7 @@
 use mdle_runtime::{Cause, Nanos};
 
 use super::operands::{Examination, Facts, examination};
-use crate::examined::{ExaminedPlan, Moment, ScopeMoment};
+use crate::examined::{ExaminedPlan, PlanMoment, ScopeMoment};
 
 /// Role of a scope at a moment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,11 +44,11 @@ pub(crate) struct Scope {
 }
 
 /// Returns the scopes that enclose the atom at a moment, with their conditions explained.
-pub(crate) fn scopes(plan: &ExaminedPlan, moment: &Moment, facts: &Facts) -> Vec<Scope> {
+pub(crate) fn scopes(plan: &ExaminedPlan, moment: &PlanMoment, facts: &Facts) -> Vec<Scope> {
     moment.scopes.iter().map(|around| scope(plan, moment, around, facts)).collect()
 }
 
-fn scope(plan: &ExaminedPlan, moment: &Moment, scope: &ScopeMoment, facts: &Facts) -> Scope {
+fn scope(plan: &ExaminedPlan, moment: &PlanMoment, scope: &ScopeMoment, facts: &Facts) -> Scope {
     let ExaminedPlan { machine, texts } = plan;
     let element = machine.element(scope.bracket);
     let words = texts.source();

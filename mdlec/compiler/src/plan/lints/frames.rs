@@ -6,15 +6,15 @@ use crate::plan::{Atom, Node, Plan, Quark, Value};
 
 /// Warns about every `FRAME here` that no law uses.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
-    Frames { plan, found }.sequence(&plan.root.body);
+    FrameLint { plan, found }.sequence(&plan.root.body);
 }
 
-struct Frames<'p, 'f> {
+struct FrameLint<'p, 'f> {
     plan: &'p Plan,
     found: &'f mut Vec<Diagnostic>,
 }
 
-impl<'p> Frames<'p, '_> {
+impl<'p> FrameLint<'p, '_> {
     /// Returns the first atom of a sequence, and `true` if a law in the sequence may use its frame.
     fn sequence(&mut self, body: &'p [Node]) -> (Option<&'p Atom>, bool) {
         body.iter().fold((None, false), |(first, is_used), node| {

@@ -1,6 +1,6 @@
 //! Closes brackets that have no closing bracket in the text, and reports them.
 
-use super::{BracketKind, Open, Pass};
+use super::{BracketKind, OpenBracket, Pass};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::source::TextRange;
 use crate::syntax::token::{Tok, Token};
@@ -26,7 +26,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    fn unclosed_brace(&mut self, open: Open, end: TextRange) {
+    fn unclosed_brace(&mut self, open: OpenBracket, end: TextRange) {
         self.balanced.is_open = true;
         if let Some(diagnostic) = open.stray.and_then(|stray| self.balanced.diagnostics.get_mut(stray)) {
             let stray = diagnostic.span();
@@ -51,7 +51,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    fn report_brace(&mut self, open: Open, at: TextRange, text: &str) {
+    fn report_brace(&mut self, open: OpenBracket, at: TextRange, text: &str) {
         let Some(place) = open.place else { return };
         let span = self.source.span(place);
         let diagnostic = Diagnostic::new(Code::E0103, "this `{` is never closed", span, "opened here");

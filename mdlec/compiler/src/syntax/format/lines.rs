@@ -16,12 +16,12 @@ struct FormattedLine {
 
 /// A formatted text under construction.
 #[derive(Debug, Default)]
-pub(super) struct Lines {
+pub(super) struct FormattedLines {
     done: Vec<FormattedLine>,
     line: Option<FormattedLine>,
 }
 
-impl Lines {
+impl FormattedLines {
     /// Begins a line that is indented by `indent` columns.
     pub(super) fn start(&mut self, indent: usize) {
         self.done.extend(self.line.take());

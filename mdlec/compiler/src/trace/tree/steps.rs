@@ -2,13 +2,13 @@
 
 use mdle_runtime::{Nanometers, Nanos, TRANSITIONS_PER_TURN};
 
-use super::{Applied, Fired, NodeKind, Open, Read, Reports, Tree};
+use super::{ElementSituation, EnteredElement, Fired, NodeKind, Reports, ScriptedInput, TreeWalk};
 use crate::diagnostic::Span;
 use crate::plan::{Condition, PlanPart};
 
 /// A step of a turn.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Step<'p> {
+pub enum TreeStep<'p> {
     /// A scope has ended, and its successor was entered.
     Transition {
         /// The transition, as a trace shows it.
@@ -19,17 +19,17 @@ pub enum Step<'p> {
         kept: usize,
     },
     /// The turn is over, with this input applied.
-    End(Applied<'p>),
+    End(ScriptedInput<'p>),
 }
 
 /// A scope, a loop or an atom that is open in a walk.
 #[derive(Debug, Clone, Copy)]
 pub struct OpenPart<'t, 'p> {
-    tree: &'t Tree<'p>,
-    open: &'t Open,
+    tree: &'t TreeWalk<'p>,
+    open: &'t EnteredElement,
 }
 
-impl<'p> Tree<'p> {
+impl<'p> TreeWalk<'p> {
     /// Enters the plan at the reports of the first turn, unless this was done before.
     pub fn begin(&mut self, reports: &Reports) {
         if !std::mem::replace(&mut self.has_begun, true) {
@@ -39,18 +39,18 @@ impl<'p> Tree<'p> {
 
     /// Executes the next step of a turn; `made` is the number of transitions so far in this turn.
     /// [`begin`](Self::begin) must be called first.
-    pub fn step(&mut self, reports: &Reports, made: usize) -> Step<'p> {
+    pub fn step(&mut self, reports: &Reports, made: usize) -> TreeStep<'p> {
         match self.fired(reports) {
             Some(mut ending) if made < TRANSITIONS_PER_TURN as usize => {
                 let operands = std::mem::take(&mut ending.operands);
                 let fired = Fired { from: self.state(), level: ending.level, by: ending.by, operands };
                 let kept = self.leave(&ending, reports.moment());
-                Step::Transition { fired, ended: ending.place, kept }
+                TreeStep::Transition { fired, ended: ending.place, kept }
             }
             cut => {
                 self.settle(reports);
-                let law = || self.law().map_or(Applied::Over, |law| Applied::Law(&law.text));
-                Step::End(cut.map_or_else(law, |_| Applied::Cut))
+                let law = || self.law().map_or(ScriptedInput::Over, |law| ScriptedInput::Law(&law.text));
+                TreeStep::End(cut.map_or_else(law, |_| ScriptedInput::Cut))
             }
         }
     }
@@ -120,6 +120,6 @@ impl<'t, 'p> OpenPart<'t, 'p> {
     /// condition.
     #[must_use]
     pub fn holds(self, condition: &Condition, reports: &Reports) -> bool {
-        condition.fired(&Read { tree: self.tree, open: self.open, reports })
+        condition.fired(&ElementSituation { tree: self.tree, open: self.open, reports })
     }
 }
