@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use mdle_compiler::alphabet::{Kind, Unit};
+use mdle_compiler::alphabet::{ParameterKind, Unit};
 use mdle_compiler::rust::Shape;
 use mdle_host::Quantity;
 use mdle_runtime::Radians;
@@ -189,9 +189,9 @@ fn an_fsm_file_has_the_keys_of_the_interfaces() {
 #[test]
 fn options_have_the_units_of_plans() {
     let kinds = [
-        (Kind::Time, Quantity::Time, "s"),
-        (Kind::Length, Quantity::Length, "m"),
-        (Kind::Angle, Quantity::Angle, "deg"),
+        (ParameterKind::Time, Quantity::Time, "s"),
+        (ParameterKind::Length, Quantity::Length, "m"),
+        (ParameterKind::Angle, Quantity::Angle, "deg"),
     ];
     let mut count = 0;
     for unit in Unit::ALL {

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use mdle_compiler::alphabet::{Decimal, Kind, Unit};
+use mdle_compiler::alphabet::{Decimal, ParameterKind, Unit};
 use mdle_compiler::diagnostic::{SourceId, Span};
 use mdle_compiler::plan::{Plan, PlanPart};
 use mdle_runtime::Nanos;
@@ -124,7 +124,7 @@ fn name(plan: &Plan, text: &str) -> Result<Name, String> {
 
 fn time(text: &str) -> Option<Nanos> {
     let (number, unit) = text.split_at(text.find(|c: char| c.is_ascii_alphabetic())?);
-    let unit = Unit::from_name(unit).filter(|unit| unit.kind == Kind::Time)?;
+    let unit = Unit::from_name(unit).filter(|unit| unit.kind == ParameterKind::Time)?;
     Decimal::parse(number.trim())?.scaled(unit.factor, unit.exponent).to_nanos().map(Nanos)
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use mdle_compiler::alphabet::{Declaration, DeclarationKind, Kind, Unit};
+use mdle_compiler::alphabet::{Declaration, DeclarationKind, ParameterKind, Unit};
 use mdle_compiler::plan::signature;
 use mdle_compiler::syntax::tree::Call;
 
@@ -97,7 +97,7 @@ pub fn completion(view: &View<'_>, byte: usize) -> Completion {
         Expected::Law => quarks(view, DeclarationKind::Control).collect(),
         Expected::Label => context.labels.iter().map(|label| simple(ItemKind::Label, label, "label")).collect(),
         Expected::Type => {
-            let types = Kind::NAMES.iter().chain(&["bits[4]"]);
+            let types = ParameterKind::NAMES.iter().chain(&["bits[4]"]);
             types.map(|name| simple(ItemKind::Type, name, "type")).collect()
         }
         Expected::Unit => units(view, &context),
@@ -135,7 +135,8 @@ fn item(view: &View<'_>, declaration: &Declaration) -> Item {
     };
     let docs = hover::quark(view.alphabet, &declaration.name, declaration.kind).unwrap_or_default();
     // A sonar number directly follows the name of a signal.
-    let is_numbered = kind == ItemKind::Signal && declaration.params.iter().any(|param| param.kind == Kind::Sonar);
+    let is_numbered =
+        kind == ItemKind::Signal && declaration.params.iter().any(|param| param.kind == ParameterKind::Sonar);
     let name = if is_numbered { format!("{}0", declaration.name) } else { declaration.name.clone() };
     Item { docs, ..simple(kind, &name, &signature(declaration)) }
 }
@@ -160,7 +161,7 @@ fn units(view: &View<'_>, context: &Context<'_>) -> Vec<Item> {
 }
 
 /// Returns the type of the argument at the cursor; `None` if it is not known.
-fn kind_of(view: &View<'_>, call: &OpenCall<'_>) -> Option<Kind> {
+fn kind_of(view: &View<'_>, call: &OpenCall<'_>) -> Option<ParameterKind> {
     if let Some(declaration) = declared(view, call) {
         return declaration.params.get(call.args).map(|param| param.kind);
     }

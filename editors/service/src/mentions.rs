@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use mdle_compiler::alphabet::{Alphabet, Declaration, DeclarationKind, Kind, Unit};
+use mdle_compiler::alphabet::{Alphabet, Declaration, DeclarationKind, ParameterKind, Unit};
 use mdle_compiler::diagnostic::Span;
 use mdle_compiler::syntax::Files;
 use mdle_compiler::syntax::tree::{
@@ -117,11 +117,11 @@ fn unit_of(param: &mdle_compiler::alphabet::Param) -> Option<Unit> {
 /// (docs/src/reference/language.md, 3.4).
 #[must_use]
 pub fn bare_unit(type_name: &str) -> Option<Unit> {
-    let kind = Kind::from_name(type_name)?;
-    if kind == Kind::Speed {
+    let kind = ParameterKind::from_name(type_name)?;
+    if kind == ParameterKind::Speed {
         return Unit::from_name("cm/s");
     }
-    if kind == Kind::Angle { Unit::from_name("deg") } else { kind.base_unit() }
+    if kind == ParameterKind::Angle { Unit::from_name("deg") } else { kind.base_unit() }
 }
 
 struct List<'l, 's> {
@@ -199,7 +199,7 @@ impl<'s> List<'_, 's> {
         }
         self.condition(&formal.condition);
         if let Some(time) = &formal.time {
-            self.argument(time, Kind::Time.base_unit());
+            self.argument(time, ParameterKind::Time.base_unit());
         }
     }
 

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use mdle_compiler::alphabet::Kind;
+use mdle_compiler::alphabet::ParameterKind;
 use mdle_runtime::{ModuleRead, Nanos};
 
 use crate::attribute::{AGE, AttributeKind, AttributeName, Reading, Value};
@@ -94,7 +94,7 @@ impl Board {
     /// of another robot. Replaces an earlier attribute with this name.
     pub(crate) fn restore(&mut self, name: AttributeName, kind: AttributeKind) {
         self.forget(&name);
-        let unit = kind.quantity().and_then(Kind::base_unit);
+        let unit = kind.quantity().and_then(ParameterKind::base_unit);
         let about = About { name: Arc::clone(&name.attribute), kind, unit, doc: "" };
         self.posts.push(Post { name, about, reading: None, latency: Nanos::ZERO, refused: 0 });
     }

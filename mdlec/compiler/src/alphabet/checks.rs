@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{AlphabetFile, Declaration, DeclarationKind, Kind};
+use super::{AlphabetFile, Declaration, DeclarationKind, ParameterKind};
 use crate::diagnostic::{Code, Diagnostic};
 
 /// Returns a diagnostic for each error in the declarations.
@@ -17,7 +17,7 @@ pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
         check_params(declaration, &mut found);
         if declaration.name == "wait"
             && declaration.kind == DeclarationKind::Interrupt
-            && kinds_of(declaration) != [Kind::Time]
+            && kinds_of(declaration) != [ParameterKind::Time]
         {
             let message = "`wait` is the timer that each scope has: its one parameter is a time".into();
             found.push(
@@ -62,7 +62,7 @@ fn exclusive(declaration: &Declaration) -> Option<Diagnostic> {
         .map(|found| found.help("its parameters are of the types bits, integer, count, sonar, robot and module"))
 }
 
-fn kinds_of(declaration: &Declaration) -> Vec<Kind> {
+fn kinds_of(declaration: &Declaration) -> Vec<ParameterKind> {
     declaration.params.iter().map(|param| param.kind).collect()
 }
 

@@ -14,7 +14,7 @@ mod token;
 pub use combined::{Alphabet, combine};
 pub use decimal::Decimal;
 pub use mdle_quantity::{did_you_mean, nearest};
-pub use quantity::{Kind, Unit, family_to_si, has_direction};
+pub use quantity::{ParameterKind, Unit, family_to_si, has_direction};
 pub use read::read;
 
 use crate::diagnostic::Span;
@@ -107,7 +107,7 @@ pub struct Param {
     /// Name of the parameter.
     pub name: String,
     /// Type of the parameter.
-    pub kind: Kind,
+    pub kind: ParameterKind,
     /// Unit of a number that is written without a unit (a bare number): the base unit of the kind if the alphabet
     /// declares no other unit; `None` if the kind has no unit.
     pub unit: Option<Unit>,

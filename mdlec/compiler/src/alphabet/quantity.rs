@@ -2,7 +2,7 @@
 
 /// Kind of a parameter's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Kind {
+pub enum ParameterKind {
     /// A length in metres.
     Length,
     /// A speed in metres per second.
@@ -35,7 +35,7 @@ pub enum Kind {
     File,
 }
 
-impl Kind {
+impl ParameterKind {
     /// Names of the kinds in an alphabet, except `bits`, which needs a length.
     pub const NAMES: &[&str] = &[
         "length",
@@ -53,7 +53,7 @@ impl Kind {
         "file",
     ];
 
-    /// Returns the kind with this name in an alphabet, if it is in [`Kind::NAMES`].
+    /// Returns the kind with this name in an alphabet, if it is in [`ParameterKind::NAMES`].
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Some(match name {
@@ -117,23 +117,23 @@ impl Kind {
 /// Returns `true` if a law with this name and with arguments of these kinds may depend on the direction of its frame:
 /// it takes an angle, or a file or a module that may contain angles. The exception is `turn`, whose angle is relative
 /// to the heading at which the atom began.
-pub fn has_direction(law: &str, mut kinds: impl Iterator<Item = Kind>) -> bool {
+pub fn has_direction(law: &str, mut kinds: impl Iterator<Item = ParameterKind>) -> bool {
     // The angle of `turn` is relative to the heading at which its atom began.
     law != "turn"
         && kinds.any(|kind| match kind {
-            Kind::Angle | Kind::File | Kind::Module => true,
-            Kind::Length
-            | Kind::Speed
-            | Kind::AngularRate
-            | Kind::Time
-            | Kind::Voltage
-            | Kind::Frequency
-            | Kind::Number
-            | Kind::Integer
-            | Kind::Count
-            | Kind::Bits(_)
-            | Kind::Sonar
-            | Kind::Robot => false,
+            ParameterKind::Angle | ParameterKind::File | ParameterKind::Module => true,
+            ParameterKind::Length
+            | ParameterKind::Speed
+            | ParameterKind::AngularRate
+            | ParameterKind::Time
+            | ParameterKind::Voltage
+            | ParameterKind::Frequency
+            | ParameterKind::Number
+            | ParameterKind::Integer
+            | ParameterKind::Count
+            | ParameterKind::Bits(_)
+            | ParameterKind::Sonar
+            | ParameterKind::Robot => false,
         })
 }
 
@@ -143,7 +143,7 @@ pub struct Unit {
     /// Name of the unit as it is written.
     pub name: &'static str,
     /// Kind of quantity that the unit measures.
-    pub kind: Kind,
+    pub kind: ParameterKind,
     /// Integer factor of the exact conversion to the family's unit: one of this unit is `factor` times ten to the power
     /// `exponent` of the family's unit.
     pub factor: u32,
@@ -158,25 +158,25 @@ pub struct Unit {
 impl Unit {
     /// All units.
     pub const ALL: &[Self] = &[
-        Self::new("m", Kind::Length, 1, 0, "m"),
-        Self::new("cm", Kind::Length, 1, -2, "m"),
-        Self::new("mm", Kind::Length, 1, -3, "m"),
-        Self::new("in", Kind::Length, 254, -4, "m"),
-        Self::new("ft", Kind::Length, 3048, -4, "m"),
-        Self::new("m/s", Kind::Speed, 1, 0, "m/s"),
-        Self::new("cm/s", Kind::Speed, 1, -2, "m/s"),
-        Self::new("mm/s", Kind::Speed, 1, -3, "m/s"),
-        Self::new("in/s", Kind::Speed, 254, -4, "m/s"),
-        Self::new("rad", Kind::Angle, 1, 0, "rad"),
-        Self::new("deg", Kind::Angle, 1, 0, "deg"),
-        Self::new("rad/s", Kind::AngularRate, 1, 0, "rad/s"),
-        Self::new("deg/s", Kind::AngularRate, 1, 0, "deg/s"),
-        Self::new("s", Kind::Time, 1, 0, "s"),
-        Self::new("ms", Kind::Time, 1, -3, "s"),
-        Self::new("min", Kind::Time, 60, 0, "s"),
-        Self::new("h", Kind::Time, 3600, 0, "s"),
-        Self::new("V", Kind::Voltage, 1, 0, "V"),
-        Self::new("Hz", Kind::Frequency, 1, 0, "Hz"),
+        Self::new("m", ParameterKind::Length, 1, 0, "m"),
+        Self::new("cm", ParameterKind::Length, 1, -2, "m"),
+        Self::new("mm", ParameterKind::Length, 1, -3, "m"),
+        Self::new("in", ParameterKind::Length, 254, -4, "m"),
+        Self::new("ft", ParameterKind::Length, 3048, -4, "m"),
+        Self::new("m/s", ParameterKind::Speed, 1, 0, "m/s"),
+        Self::new("cm/s", ParameterKind::Speed, 1, -2, "m/s"),
+        Self::new("mm/s", ParameterKind::Speed, 1, -3, "m/s"),
+        Self::new("in/s", ParameterKind::Speed, 254, -4, "m/s"),
+        Self::new("rad", ParameterKind::Angle, 1, 0, "rad"),
+        Self::new("deg", ParameterKind::Angle, 1, 0, "deg"),
+        Self::new("rad/s", ParameterKind::AngularRate, 1, 0, "rad/s"),
+        Self::new("deg/s", ParameterKind::AngularRate, 1, 0, "deg/s"),
+        Self::new("s", ParameterKind::Time, 1, 0, "s"),
+        Self::new("ms", ParameterKind::Time, 1, -3, "s"),
+        Self::new("min", ParameterKind::Time, 60, 0, "s"),
+        Self::new("h", ParameterKind::Time, 3600, 0, "s"),
+        Self::new("V", ParameterKind::Voltage, 1, 0, "V"),
+        Self::new("Hz", ParameterKind::Frequency, 1, 0, "Hz"),
     ];
 
     /// Returns the unit with this name.
@@ -205,7 +205,7 @@ impl Unit {
         if self.exponent < 0 { value / tens } else { value * tens }
     }
 
-    const fn new(name: &'static str, kind: Kind, factor: u32, exponent: i32, family: &'static str) -> Self {
+    const fn new(name: &'static str, kind: ParameterKind, factor: u32, exponent: i32, family: &'static str) -> Self {
         let is_base = factor == 1 && exponent == 0 && !matches!(family.as_bytes(), [b'd', ..]);
         Self { name, kind, factor, exponent, family, is_base }
     }

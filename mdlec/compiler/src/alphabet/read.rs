@@ -7,7 +7,9 @@ use logos::Logos;
 
 use super::checks;
 use super::token::Token;
-use super::{AlphabetFile, Capability, Decimal, Declaration, DeclarationKind, Kind, Origin, Param, TargetHead, Unit};
+use super::{
+    AlphabetFile, Capability, Decimal, Declaration, DeclarationKind, Origin, Param, ParameterKind, TargetHead, Unit,
+};
 use crate::diagnostic::{Code, Diagnostic, SourceId, Span, sort};
 
 /// Reads an alphabet, and returns it with all diagnostics; `None` if it has no head.
@@ -101,7 +103,7 @@ impl<'t> Reader<'t> {
     fn period(&mut self) -> Read<u64> {
         let (digits, span) = self.number()?;
         let (word, unit_span) = self.word()?;
-        let unit = Unit::from_name(&word).filter(|unit| unit.kind == Kind::Time);
+        let unit = Unit::from_name(&word).filter(|unit| unit.kind == ParameterKind::Time);
         let exact = unit.and_then(|unit| Some(Decimal::parse(&digits)?.scaled(unit.factor, unit.exponent)));
         match exact.and_then(|exact| exact.to_nanos()).filter(|nanos| *nanos > 0) {
             Some(nanos) => Ok(nanos),
@@ -200,8 +202,8 @@ impl<'t> Reader<'t> {
         let (word, span) = self.name()?;
         let size = self.size()?;
         let kind = match (word.as_str(), size) {
-            ("bits", Some(length)) => Some(Kind::Bits(length)),
-            (word, None) => Kind::from_name(word),
+            ("bits", Some(length)) => Some(ParameterKind::Bits(length)),
+            (word, None) => ParameterKind::from_name(word),
             (_, Some(_)) => None,
         };
         let Some(kind) = kind else {
@@ -234,13 +236,13 @@ impl<'t> Reader<'t> {
     }
 
     /// Reads `[ "with" NAME { "," NAME } ]`, the attributes of a module.
-    fn with(&mut self, kind: Kind) -> Read<Vec<String>> {
+    fn with(&mut self, kind: ParameterKind) -> Read<Vec<String>> {
         let mut with = Vec::new();
         if self.peek_word() != Some("with") {
             return Ok(with);
         }
         let (_, span) = self.word()?;
-        if kind != Kind::Module {
+        if kind != ParameterKind::Module {
             return self.defect(span, "only a module has attributes", "`with` follows the type `module`");
         }
         with.push(self.name()?.0);
@@ -257,7 +259,7 @@ impl<'t> Reader<'t> {
         token(0) == Some(Token::Comma) && token(1) == Some(Token::Word) && token(2) != Some(Token::Colon)
     }
 
-    fn unit(&mut self, kind: Kind) -> Read<Unit> {
+    fn unit(&mut self, kind: ParameterKind) -> Read<Unit> {
         let (word, span) = self.word()?;
         match Unit::from_name(&word) {
             Some(unit) if unit.kind == kind => Ok(unit),

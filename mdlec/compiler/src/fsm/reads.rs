@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Machine;
-use crate::alphabet::{Alphabet, Declaration, DeclarationKind, Kind};
+use crate::alphabet::{Alphabet, Declaration, DeclarationKind, ParameterKind};
 use crate::plan::{Quark, Value};
 
 /// An attribute of a module that a plan reads.
@@ -28,7 +28,7 @@ fn reads_of<'m>(quark: &'m Quark, alphabet: &'m Alphabet) -> Vec<AttributeRead<'
     let declaration = declaration.filter(|_| quark.comparison.is_none());
     let arguments = declaration.iter().flat_map(|declaration| quark.args.iter().zip(&declaration.params));
     let modules = arguments.filter_map(|(argument, param)| match argument {
-        Value::Name(Kind::Module, module) => Some((module.as_str(), param)),
+        Value::Name(ParameterKind::Module, module) => Some((module.as_str(), param)),
         Value::Name(..)
         | Value::Quantity { .. }
         | Value::Infinity(_)
@@ -49,7 +49,7 @@ fn reads_of<'m>(quark: &'m Quark, alphabet: &'m Alphabet) -> Vec<AttributeRead<'
 /// if there is no such signal.
 fn unit(attribute: &str, alphabet: &Alphabet) -> Option<&'static str> {
     let is_read = |declaration: &&Declaration| {
-        let own = |param: &crate::alphabet::Param| param.kind == Kind::Module && param.with.is_empty();
+        let own = |param: &crate::alphabet::Param| param.kind == ParameterKind::Module && param.with.is_empty();
         declaration.kind == DeclarationKind::Signal && declaration.params.iter().any(own)
     };
     let signal = alphabet.declarations_of(attribute).find(is_read)?;

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::Machine;
-use crate::alphabet::Kind;
+use crate::alphabet::ParameterKind;
 use crate::plan::{Quark, Value};
 
 /// A `rendezvous` in the interrupt of an element.
@@ -38,7 +38,7 @@ pub fn meetings(machine: &Machine) -> BTreeSet<Rendezvous<'_>> {
 
 fn robots_of(quark: &Quark) -> impl Iterator<Item = &str> {
     quark.args.iter().filter_map(|argument| match argument {
-        Value::Name(Kind::Robot, robot) => Some(robot.as_str()),
+        Value::Name(ParameterKind::Robot, robot) => Some(robot.as_str()),
         Value::Name(..)
         | Value::Quantity { .. }
         | Value::Infinity(_)

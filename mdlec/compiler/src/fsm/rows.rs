@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, VecDeque};
 use mdle_runtime::{Condition as Row, Fact, Guard, LawRow, MarkRow, Nanometers, Nanos, Radians};
 
 use super::{Atom, Element, Machine};
-use crate::alphabet::{Alphabet, Kind};
+use crate::alphabet::{Alphabet, ParameterKind};
 use crate::plan::{Condition, Quark, QuarkId, Value};
 
 /// The conditions, laws and labels of a plan, as table rows.
@@ -54,7 +54,7 @@ pub fn replayed_files<'m>(machine: &'m Machine, alphabet: &Alphabet) -> BTreeSet
 /// Returns the name of the file that an argument names; `None` for an argument that is not a file.
 fn file(argument: &Value) -> Option<&str> {
     match argument {
-        Value::Name(Kind::File, name) => Some(name),
+        Value::Name(ParameterKind::File, name) => Some(name),
         Value::Name(..)
         | Value::Quantity { .. }
         | Value::Infinity(_)

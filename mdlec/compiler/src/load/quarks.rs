@@ -6,7 +6,7 @@ use mdle_runtime::{
 };
 
 use super::{LoadError, NameBudget, names};
-use crate::alphabet::{self, Kind};
+use crate::alphabet::{self, ParameterKind};
 use crate::fsm::Machine;
 use crate::plan::{self, Compared, Quark, QuarkId, Value};
 
@@ -64,7 +64,7 @@ impl QuarkMaker<'_> {
 
 fn operator(comparison: &plan::Comparison) -> Operator {
     let tolerance = comparison.tolerance.in_si();
-    let is_angle = matches!(comparison.tolerance, Value::Quantity { kind: Kind::Angle, .. });
+    let is_angle = matches!(comparison.tolerance, Value::Quantity { kind: ParameterKind::Angle, .. });
     match comparison.operator {
         plan::Operator::Equal if is_angle => Operator::SameDirection(tolerance),
         plan::Operator::Equal => Operator::Equal(tolerance),
@@ -76,31 +76,31 @@ fn operator(comparison: &plan::Comparison) -> Operator {
 }
 
 /// Returns an argument for a parameter of this kind.
-fn argument<'v>(value: &'v Value, parameter: Kind, budget: &NameBudget) -> Result<Argument<'v>, LoadError> {
+fn argument<'v>(value: &'v Value, parameter: ParameterKind, budget: &NameBudget) -> Result<Argument<'v>, LoadError> {
     let si = value.in_si();
     Ok(match value {
         Value::Quantity { kind, exact, .. } => match kind {
-            Kind::Length => Argument::Length(Meters(si)),
-            Kind::Speed => Argument::Speed(MetersPerSecond(si)),
-            Kind::Angle => Argument::Angle(Radians(si)),
-            Kind::AngularRate => Argument::AngularRate(RadiansPerSecond(si)),
-            Kind::Voltage => Argument::Voltage(Volts(si)),
-            Kind::Time => Argument::Time(Nanos(exact.to_nanos().unwrap_or(u64::MAX))),
-            Kind::Frequency
-            | Kind::Number
-            | Kind::Integer
-            | Kind::Count
-            | Kind::Bits(_)
-            | Kind::Sonar
-            | Kind::Robot
-            | Kind::Module
-            | Kind::File => Argument::Number(si),
+            ParameterKind::Length => Argument::Length(Meters(si)),
+            ParameterKind::Speed => Argument::Speed(MetersPerSecond(si)),
+            ParameterKind::Angle => Argument::Angle(Radians(si)),
+            ParameterKind::AngularRate => Argument::AngularRate(RadiansPerSecond(si)),
+            ParameterKind::Voltage => Argument::Voltage(Volts(si)),
+            ParameterKind::Time => Argument::Time(Nanos(exact.to_nanos().unwrap_or(u64::MAX))),
+            ParameterKind::Frequency
+            | ParameterKind::Number
+            | ParameterKind::Integer
+            | ParameterKind::Count
+            | ParameterKind::Bits(_)
+            | ParameterKind::Sonar
+            | ParameterKind::Robot
+            | ParameterKind::Module
+            | ParameterKind::File => Argument::Number(si),
         },
-        Value::Infinity(Kind::Time) => Argument::Time(Nanos::MAX),
+        Value::Infinity(ParameterKind::Time) => Argument::Time(Nanos::MAX),
         Value::Infinity(_) => Argument::Count(u64::MAX),
         Value::Bits(bits) => Argument::Bits(bits),
         Value::Integer(whole) => match u64::try_from(*whole) {
-            Ok(count) if parameter == Kind::Count => Argument::Count(count),
+            Ok(count) if parameter == ParameterKind::Count => Argument::Count(count),
             Ok(_) | Err(_) => Argument::Integer(*whole),
         },
         Value::Sonar(sonar) => Argument::Sonar(SonarId::new(*sonar)),

@@ -8,7 +8,7 @@ mod wrong_count;
 
 use super::Value;
 use super::parameters::Parameters;
-use crate::alphabet::{Declaration, DeclarationKind, Kind, Param, Unit};
+use crate::alphabet::{Declaration, DeclarationKind, Param, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Number};
 pub(super) use examples::example;
@@ -93,21 +93,21 @@ pub fn signature(declaration: &Declaration) -> String {
     for param in &declaration.params {
         let unit = param.unit.map(|unit| format!(" in {}", unit.name)).unwrap_or_default();
         let what = match param.kind {
-            Kind::Bits(length) => format!("{length} bits"),
-            Kind::Sonar => "sonar 0 to 15".into(),
-            Kind::Module => "module".into(),
-            Kind::Length
-            | Kind::Speed
-            | Kind::Angle
-            | Kind::AngularRate
-            | Kind::Time
-            | Kind::Voltage
-            | Kind::Frequency
-            | Kind::Number
-            | Kind::Integer
-            | Kind::Count
-            | Kind::Robot
-            | Kind::File => format!("{}{unit}", param.name),
+            ParameterKind::Bits(length) => format!("{length} bits"),
+            ParameterKind::Sonar => "sonar 0 to 15".into(),
+            ParameterKind::Module => "module".into(),
+            ParameterKind::Length
+            | ParameterKind::Speed
+            | ParameterKind::Angle
+            | ParameterKind::AngularRate
+            | ParameterKind::Time
+            | ParameterKind::Voltage
+            | ParameterKind::Frequency
+            | ParameterKind::Number
+            | ParameterKind::Integer
+            | ParameterKind::Count
+            | ParameterKind::Robot
+            | ParameterKind::File => format!("{}{unit}", param.name),
         };
         let open = if param.default.is_some() { ("[", "]") } else { ("<", ">") };
         text += &format!(" {}{what}{}", open.0, open.1);
@@ -163,23 +163,34 @@ impl Fitting<'_> {
 
     /// Converts an argument; `bare` is the unit of a number that is written without a unit.
     fn argument(&self, arg: &Arg, param: &Param, bare: Option<Unit>) -> Fitted {
-        if let (Arg::Name(name), Kind::Sonar) = (arg, param.kind)
+        if let (Arg::Name(name), ParameterKind::Sonar) = (arg, param.kind)
             && let Some(number) = examples::sonar(name)
         {
             return self.whole(&number, param);
         }
         match (arg, param.kind) {
-            (Arg::Number(number), Kind::Bits(length)) => bits(number, length),
+            (Arg::Number(number), ParameterKind::Bits(length)) => bits(number, length),
             (
                 Arg::Number(number),
-                Kind::Length | Kind::Speed | Kind::Angle | Kind::AngularRate | Kind::Time | Kind::Voltage,
+                ParameterKind::Length
+                | ParameterKind::Speed
+                | ParameterKind::Angle
+                | ParameterKind::AngularRate
+                | ParameterKind::Time
+                | ParameterKind::Voltage,
             )
-            | (Arg::Number(number), Kind::Frequency | Kind::Number) => self.quantity(number, param, bare),
-            (Arg::Number(number), Kind::Integer | Kind::Count | Kind::Sonar) => self.whole(number, param),
-            (Arg::Infinity(_), Kind::Time | Kind::Count) => Ok((Value::Infinity(param.kind), "inf".into())),
-            (Arg::Name(name), Kind::Robot | Kind::File)
-            | (Arg::String(name), Kind::File)
-            | (Arg::Module(name), Kind::Module) => {
+            | (Arg::Number(number), ParameterKind::Frequency | ParameterKind::Number) => {
+                self.quantity(number, param, bare)
+            }
+            (Arg::Number(number), ParameterKind::Integer | ParameterKind::Count | ParameterKind::Sonar) => {
+                self.whole(number, param)
+            }
+            (Arg::Infinity(_), ParameterKind::Time | ParameterKind::Count) => {
+                Ok((Value::Infinity(param.kind), "inf".into()))
+            }
+            (Arg::Name(name), ParameterKind::Robot | ParameterKind::File)
+            | (Arg::String(name), ParameterKind::File)
+            | (Arg::Module(name), ParameterKind::Module) => {
                 let words = match arg {
                     Arg::Module(_) => format!("{} module", name.node),
                     Arg::String(_) => format!("\"{}\"", name.node),
@@ -187,11 +198,11 @@ impl Fitting<'_> {
                 };
                 Ok((Value::Name(param.kind, name.node.to_owned()), words))
             }
-            (Arg::Name(name), Kind::Module) => Err(self
+            (Arg::Name(name), ParameterKind::Module) => Err(self
                 .mismatch(arg, param, format!("found the name `{}`", name.node))
                 .fix("if it is a module, write {}", name.span, format!("{} module", name.node))
                 .into()),
-            (Arg::Number(_), Kind::Robot | Kind::Module | Kind::File) => {
+            (Arg::Number(_), ParameterKind::Robot | ParameterKind::Module | ParameterKind::File) => {
                 Err(self.mismatch(arg, param, "found a number".into()).into())
             }
             (Arg::Infinity(_), _) => Err(self.endless(arg, param).into()),
@@ -204,7 +215,7 @@ impl Fitting<'_> {
     /// Reports `inf` for a parameter that must be finite.
     fn endless(&self, arg: &Arg, param: &Param) -> Diagnostic {
         let report = self.mismatch(arg, param, "found infinity".into());
-        let is_way = self.declaration.kind == DeclarationKind::Control && param.kind == Kind::Length;
+        let is_way = self.declaration.kind == DeclarationKind::Control && param.kind == ParameterKind::Length;
         if !is_way {
             return report;
         }
@@ -221,7 +232,7 @@ impl Fitting<'_> {
                 .fix("for instance {}", arg.span(), example)
                 .help("`here` is a frame, in front of an element: `FRAME here (Atom (null) rotate 90)`"),
             (Some(example), _) => diagnostic.fix("for instance {}", arg.span(), example),
-            (None, Arg::String(name)) if param.kind == Kind::Robot && is_name(name.node) => {
+            (None, Arg::String(name)) if param.kind == ParameterKind::Robot && is_name(name.node) => {
                 diagnostic.fix("the name of a robot has no quotes: {}", arg.span(), name.node)
             }
             (None, _) => diagnostic,

@@ -5,7 +5,7 @@ use super::arguments::{Fitted, value};
 use super::parameters::{DefinitionNames, Parameter};
 use super::quarks::ResolvedQuarks;
 use super::{Compared, Comparison, Condition, Operator, Quark, QuarkId, Value};
-use crate::alphabet::{self, Decimal, Declaration, DeclarationKind, Kind, Unit, family_to_si};
+use crate::alphabet::{self, Decimal, Declaration, DeclarationKind, ParameterKind, Unit, family_to_si};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Call, Number, Operand};
 
@@ -40,7 +40,7 @@ impl SignalCall<'_> {
 pub fn is_time(declaration: &Declaration) -> bool {
     declaration.name == TIME
         && declaration.params.is_empty()
-        && declaration.unit.is_some_and(|(unit, _)| unit.kind == Kind::Time)
+        && declaration.unit.is_some_and(|(unit, _)| unit.kind == ParameterKind::Time)
 }
 
 /// Returns `true` if a declaration is the signal `way`, the length of the path driven since a scope was entered.
@@ -48,7 +48,7 @@ pub fn is_time(declaration: &Declaration) -> bool {
 pub fn is_way(declaration: &Declaration) -> bool {
     declaration.name == WAY
         && declaration.params.is_empty()
-        && declaration.unit.is_some_and(|(unit, _)| unit.kind == Kind::Length)
+        && declaration.unit.is_some_and(|(unit, _)| unit.kind == ParameterKind::Length)
 }
 
 /// Resolves a comparison to a condition.
@@ -154,7 +154,7 @@ fn given(parameter: &Parameter<'_>, at: Span, signal: SignalCall<'_>) -> Fitted 
 
 /// Returns `inf`, which is allowed only in a comparison of a time.
 fn without_end(at: Span, SignalCall { unit, declaration, .. }: SignalCall<'_>) -> Fitted {
-    if unit.kind == Kind::Time {
+    if unit.kind == ParameterKind::Time {
         return Ok((Value::Infinity(unit.kind), "inf".into()));
     }
     let message = format!("expected {}, found infinity", unit.kind.words());
@@ -265,7 +265,7 @@ fn indexed<'s>(call: &Call<'s>, quarks: &ResolvedQuarks<'_>) -> (&'s str, Option
     let name = base.strip_suffix('_').unwrap_or(base);
     let of_sonar = |declaration: &Declaration| {
         declaration.kind == DeclarationKind::Signal
-            && matches!(declaration.params.as_slice(), [only] if only.kind == Kind::Sonar)
+            && matches!(declaration.params.as_slice(), [only] if only.kind == ParameterKind::Sonar)
     };
     if digits.is_empty() || !quarks.alphabet().declarations_of(name).any(of_sonar) {
         return (call.name, None);

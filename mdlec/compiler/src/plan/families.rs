@@ -2,7 +2,7 @@
 //! that its alphabet declares `exclusive` fires for at most one value of its arguments.
 
 use super::{Compared, Comparison, Operator, Quark, QuarkId, Value};
-use crate::alphabet::{Kind, family_to_si};
+use crate::alphabet::{ParameterKind, family_to_si};
 
 /// A family of interrupt quarks that depend on the same quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,7 +26,7 @@ pub(crate) fn family(quark: &Quark) -> Option<Family<'_>> {
 /// a comparison with another signal.
 fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
     let si = |value: &Value| match value {
-        Value::Quantity { kind: Kind::Angle, .. } => None,
+        Value::Quantity { kind: ParameterKind::Angle, .. } => None,
         Value::Quantity { exact, family, .. } => Some(exact.to_f64() * family_to_si(family)),
         Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => None,
     };

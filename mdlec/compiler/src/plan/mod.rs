@@ -43,7 +43,7 @@ pub(crate) use words::Words;
 
 use std::num::NonZeroU32;
 
-use crate::alphabet::{Decimal, Kind, Unit, family_to_si};
+use crate::alphabet::{Decimal, ParameterKind, Unit, family_to_si};
 use crate::diagnostic::Span;
 
 /// A plan: the outermost scope, and the quarks used anywhere in the plan.
@@ -124,14 +124,14 @@ pub enum Value {
     /// A number with a kind.
     Quantity {
         /// Kind of the quantity.
-        kind: Kind,
+        kind: ParameterKind,
         /// Exact value in the unit of the family.
         exact: Decimal,
         /// Unit family of the value: degrees and radians are two families. Empty for a number without a unit.
         family: &'static str,
     },
     /// The value `inf` of a time or a count.
-    Infinity(Kind),
+    Infinity(ParameterKind),
     /// Bits, in the order in which they are written, as in `atIsection 0100`.
     Bits(Vec<bool>),
     /// A whole number.
@@ -139,7 +139,7 @@ pub enum Value {
     /// Number of a sonar, 0 to 15.
     Sonar(u8),
     /// Name of a robot, a module or a file.
-    Name(Kind, String),
+    Name(ParameterKind, String),
 }
 
 impl Value {

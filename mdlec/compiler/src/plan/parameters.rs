@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::untyped;
-use crate::alphabet::{self, Alphabet, Kind, Unit};
+use crate::alphabet::{self, Alphabet, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Name};
 
@@ -29,7 +29,7 @@ pub(super) struct Parameters<'s> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parameter<'s> {
     pub(super) name: Name<'s>,
-    pub(super) kind: Kind,
+    pub(super) kind: ParameterKind,
     /// Argument of the parameter; `None` while the definition is checked by itself.
     pub(super) given: Option<Arg<'s>>,
 }
@@ -38,17 +38,17 @@ impl Parameter<'_> {
     /// Returns the unit of a number that is written without a unit: the paper's unit for this kind, which the quarks of
     /// `mdle-atoms` use too; `None` if the kind has no unit.
     pub(super) fn unit(&self) -> Option<Unit> {
-        if self.kind == Kind::Speed {
+        if self.kind == ParameterKind::Speed {
             return Unit::from_name("cm/s");
         }
-        if self.kind == Kind::Angle {
+        if self.kind == ParameterKind::Angle {
             return Unit::from_name("deg");
         }
         self.kind.base_unit()
     }
 
     /// Reports that this parameter is used at `span`, where the kind `expected` is required.
-    pub(super) fn mismatch(&self, expected: Kind, span: Span) -> Diagnostic {
+    pub(super) fn mismatch(&self, expected: ParameterKind, span: Span) -> Diagnostic {
         let (name, kind) = (self.name.node, self.kind.words());
         let message = format!("expected {}, found `{name}`, which is {kind}", expected.words());
         Diagnostic::new(Code::E0302, message, span, format!("has to be {}", expected.words()))
@@ -102,7 +102,7 @@ impl<'s> Parameters<'s> {
     pub(super) fn of(&self, arg: &Arg<'_>) -> Option<&Parameter<'s>> {
         match arg {
             Arg::Name(name) => self.get(name.node),
-            Arg::Module(name) => self.get(name.node).filter(|parameter| parameter.kind == Kind::Module),
+            Arg::Module(name) => self.get(name.node).filter(|parameter| parameter.kind == ParameterKind::Module),
             Arg::Number(_) | Arg::Infinity(_) | Arg::String(_) => None,
         }
     }
@@ -120,20 +120,20 @@ impl<'s> Parameters<'s> {
 }
 
 /// Returns the kind for the name of a type, such as `bits[4]`; `None` if there is no such type.
-fn kind_of(name: &str) -> Option<Kind> {
+fn kind_of(name: &str) -> Option<ParameterKind> {
     let length = name.strip_prefix("bits[").and_then(|rest| rest.strip_suffix(']'));
     match length {
-        Some(length) => length.parse().ok().map(Kind::Bits),
-        None => Kind::from_name(name),
+        Some(length) => length.parse().ok().map(ParameterKind::Bits),
+        None => ParameterKind::from_name(name),
     }
 }
 
 /// Reports an unknown type; `by_use` is the kind that the uses of the parameter require.
-fn unknown_type(name: Name<'_>, by_use: Option<Kind>) -> Diagnostic {
+fn unknown_type(name: Name<'_>, by_use: Option<ParameterKind>) -> Diagnostic {
     let message = format!("there is no type of parameter called `{}`", name.node);
     let found = Diagnostic::new(Code::E0201, message, name.span, "not a type");
     if let Some(unit) = Unit::from_name(name.node) {
-        let kind = Kind::NAMES.iter().find(|name| Kind::from_name(name) == Some(unit.kind));
+        let kind = ParameterKind::NAMES.iter().find(|name| ParameterKind::from_name(name) == Some(unit.kind));
         return kind.iter().fold(found, |found, kind| found.fix("a type is what is measured: {}", name.span, **kind));
     }
     if matches!(name.node, "int" | "Int" | "uint" | "unsigned" | "u32" | "i32" | "times" | "repeats") {
@@ -149,7 +149,7 @@ fn unknown_type(name: Name<'_>, by_use: Option<Kind>) -> Diagnostic {
         "velocity" => Some("speed"),
         "degrees" | "heading" => Some("angle"),
         "string" | "path" => Some("file"),
-        other => alphabet::nearest(other, Kind::NAMES.iter().copied()),
+        other => alphabet::nearest(other, ParameterKind::NAMES.iter().copied()),
     };
     match meant {
         Some(near) => found.fix("did you mean {}?", name.span, near),
@@ -158,7 +158,7 @@ fn unknown_type(name: Name<'_>, by_use: Option<Kind>) -> Diagnostic {
                 Some(kind) => found.fix("where it is used it has to be {}", name.span, untyped::type_name(kind)),
                 None => found,
             };
-            found.help(format!("the types are {} and bits[N]", Kind::NAMES.join(", ")))
+            found.help(format!("the types are {} and bits[N]", ParameterKind::NAMES.join(", ")))
         }
     }
 }
@@ -177,7 +177,9 @@ pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
 /// Reports a loop count `name` that is not a parameter of the type `count`.
 pub(super) fn no_count(name: Name<'_>, parameters: &Parameters<'_>) -> Diagnostic {
     if let Some(parameter) = parameters.get(name.node) {
-        return parameter.mismatch(Kind::Count, name.span).help(format!("declare it as `{}: count`", name.node));
+        return parameter
+            .mismatch(ParameterKind::Count, name.span)
+            .help(format!("declare it as `{}: count`", name.node));
     }
     let message = format!("there is no parameter called `{}`", name.node);
     let found = Diagnostic::new(Code::E0201, message, name.span, "not a count");

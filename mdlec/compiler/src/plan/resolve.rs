@@ -12,7 +12,7 @@ use super::quarks::ResolvedQuarks;
 use super::resolve_conditions::{self, ConditionScope};
 use super::size::Bounds;
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
-use crate::alphabet::{Alphabet, DeclarationKind, Kind, Unit};
+use crate::alphabet::{Alphabet, DeclarationKind, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
 use crate::syntax::Files;
 use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal, Frame, Number, Primary};
@@ -371,7 +371,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         let number = match count {
             Count::Infinity(_) => return None,
             Count::Name(name) => {
-                match self.parameters.get(name.node).filter(|found| found.kind == Kind::Count) {
+                match self.parameters.get(name.node).filter(|found| found.kind == ParameterKind::Count) {
                     Some(Parameter { given: Some(Arg::Number(number)), .. }) => number,
                     Some(Parameter { given: Some(Arg::Infinity(_)), .. }) => return None,
                     // Until the plan is used, the parameter has no argument; any count is valid.
@@ -407,7 +407,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     fn angle(&mut self, number: &Number) -> f64 {
         let unit = number.unit().unwrap_or("deg");
         let decimal = Decimal::parse(number.digits());
-        match (Unit::from_name(unit).filter(|unit| unit.kind == Kind::Angle), decimal) {
+        match (Unit::from_name(unit).filter(|unit| unit.kind == ParameterKind::Angle), decimal) {
             (Some(unit), Some(decimal)) if decimal.to_f64().abs() <= FRAME => decimal.to_f64() * unit.family_to_si(),
             (Some(_), Some(_)) => {
                 let message = format!("a frame is turned by an angle up to {FRAME}, found `{}`", number.digits());

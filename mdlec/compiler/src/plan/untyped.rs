@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::alphabet::{Alphabet, DeclarationKind, Kind};
+use crate::alphabet::{Alphabet, DeclarationKind, ParameterKind};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Count, Element, Name, Param, Plan, Primary, Spanned};
 use crate::syntax::{Arena, Files};
@@ -24,7 +24,7 @@ pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &A
         if header.names.iter().any(|name| is_known(name.node)) || !is_used {
             continue;
         }
-        let kind = |name: &Name<'s>| header.kind.or_else(|| uses.kind_of(name.node)).unwrap_or(Kind::Length);
+        let kind = |name: &Name<'s>| header.kind.or_else(|| uses.kind_of(name.node)).unwrap_or(ParameterKind::Length);
         let typed: Vec<_> =
             header.names.iter().map(|name| format!("{}: {}", name.node, type_name(kind(name)))).collect();
         let params = header.names.iter().map(|name| Param {
@@ -48,7 +48,7 @@ pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &A
 struct ParameterList<'s> {
     names: Vec<Name<'s>>,
     /// Type that is written before the name, if there is only one name.
-    kind: Option<Kind>,
+    kind: Option<ParameterKind>,
     span: Span,
     /// Elements of the plan without the header.
     elements: &'s [Element<'s>],
@@ -60,7 +60,7 @@ impl<'s> ParameterList<'s> {
         let ConditionNode::Call(call) = condition.node else { return None };
         let (names, kind) = match call.args {
             [] => (vec![named(call)], None),
-            [Arg::Name(name)] => (vec![*name], Some(Kind::from_name(call.name)?)),
+            [Arg::Name(name)] => (vec![*name], Some(ParameterKind::from_name(call.name)?)),
             _ => return None,
         };
         Some(Self { names, kind, span: condition.span, elements: plan.elements })
@@ -89,14 +89,14 @@ fn named<'s>(call: &Call<'s>) -> Name<'s> {
 }
 
 /// Returns the kind that the first use of a parameter in its plan requires.
-pub(super) fn kind_by_use(plan: &Plan<'_>, name: &str, alphabet: &Alphabet) -> Option<Kind> {
+pub(super) fn kind_by_use(plan: &Plan<'_>, name: &str, alphabet: &Alphabet) -> Option<ParameterKind> {
     UseFinder { alphabet, elements: plan.elements }.kind_of(name)
 }
 
 /// Writes a type as in a plan.
-pub(super) fn type_name(kind: Kind) -> String {
-    let name = Kind::NAMES.iter().find(|name| Kind::from_name(name) == Some(kind));
-    if let Kind::Bits(length) = kind {
+pub(super) fn type_name(kind: ParameterKind) -> String {
+    let name = ParameterKind::NAMES.iter().find(|name| ParameterKind::from_name(name) == Some(kind));
+    if let ParameterKind::Bits(length) = kind {
         return format!("bits[{length}]");
     }
     name.map_or_else(String::new, |name| (*name).to_owned())
@@ -123,10 +123,10 @@ struct UseFinder<'a, 's> {
 impl UseFinder<'_, '_> {
     /// Returns the kind that a name must have: a count if it is a loop count, and otherwise the kind of the first
     /// parameter that gets the name as its argument; `None` if the name is not used in these ways.
-    fn kind_of(&self, name: &str) -> Option<Kind> {
+    fn kind_of(&self, name: &str) -> Option<ParameterKind> {
         let is_name = |arg: &Arg<'_>| matches!(arg, Arg::Name(given) if given.node == name);
         if counts(self.elements, name) {
-            return Some(Kind::Count);
+            return Some(ParameterKind::Count);
         }
         calls(self.elements, &mut |call| {
             let at = call.args.iter().position(is_name)?;

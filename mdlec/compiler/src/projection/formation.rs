@@ -2,7 +2,7 @@
 //! robot.
 
 use super::build::Build;
-use crate::alphabet::{Alphabet, Kind, Param, Unit, did_you_mean};
+use crate::alphabet::{Alphabet, Param, ParameterKind, Unit, did_you_mean};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Arg, Call};
 
@@ -143,7 +143,7 @@ fn spacing(arg: &Arg<'_>) -> Result<(f64, Span), Diagnostic> {
         let report = wrong(format!("the distance `{digits}` of the robots has no unit"), "no unit");
         return Err(report.fix("write {}", span, format!("{digits}m")));
     };
-    let Some(unit) = Unit::from_name(unit).filter(|unit| unit.kind == Kind::Length) else {
+    let Some(unit) = Unit::from_name(unit).filter(|unit| unit.kind == ParameterKind::Length) else {
         let message = format!("the distance of the robots is a length, found `{digits}{unit}`");
         return Err(wrong(message, "not a length").help("lengths are in `m`, `cm`, `mm`, `in` or `ft`"));
     };

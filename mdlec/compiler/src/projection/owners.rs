@@ -1,7 +1,7 @@
 //! Finds the robot to which a quark in the text of a group belongs: `any q`, `all q` and `robot1.q`.
 
 use super::build::Build;
-use crate::alphabet::{Kind, nearest};
+use crate::alphabet::{ParameterKind, nearest};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Arg, Call};
 
@@ -114,7 +114,7 @@ impl<'s> Build<'_, 's> {
         let Some(own) = self.robots.get(robot) else { return false };
         let names_robot = |index: usize| {
             let mut declarations = self.alphabet.declarations_of(call.name);
-            declarations.any(|known| known.params.get(index).is_some_and(|param| param.kind == Kind::Robot))
+            declarations.any(|known| known.params.get(index).is_some_and(|param| param.kind == ParameterKind::Robot))
         };
         let itself = call.args.iter().enumerate().find_map(|(index, arg)| {
             let Arg::Name(name) = arg else { return None };

@@ -5,7 +5,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::names::quark_type;
-use crate::alphabet::Kind;
+use crate::alphabet::ParameterKind;
 use crate::plan::{Compared, Comparison, Operator, Quark, QuarkId, Value, in_degrees};
 
 /// Emits the type of a quark among `quarks`: `robot::Go`, or for a comparison `runtime::Comparison<robot::R,
@@ -33,7 +33,7 @@ pub(super) fn compared(
     let left = signal(comparison.signal);
     let tolerance = number(comparison.tolerance.in_si());
     let operator = match (comparison.operator, &comparison.tolerance) {
-        (Operator::Equal, Value::Quantity { kind: Kind::Angle, .. }) => quote!(SameDirection(#tolerance)),
+        (Operator::Equal, Value::Quantity { kind: ParameterKind::Angle, .. }) => quote!(SameDirection(#tolerance)),
         (Operator::Equal, _) => quote!(Equal(#tolerance)),
         (Operator::Less, _) => quote!(Less),
         (Operator::LessOrEqual, _) => quote!(LessOrEqual),
@@ -99,27 +99,27 @@ fn argument(value: &Value) -> TokenStream {
             let si = value.in_si();
             let number = number(si);
             match kind {
-                Kind::Length => quote!(runtime::Meters(#number)),
-                Kind::Speed => quote!(runtime::MetersPerSecond(#number)),
-                Kind::Angle => angle(si),
-                Kind::AngularRate => quote!(runtime::RadiansPerSecond(#number)),
-                Kind::Voltage => quote!(runtime::Volts(#number)),
-                Kind::Time => {
+                ParameterKind::Length => quote!(runtime::Meters(#number)),
+                ParameterKind::Speed => quote!(runtime::MetersPerSecond(#number)),
+                ParameterKind::Angle => angle(si),
+                ParameterKind::AngularRate => quote!(runtime::RadiansPerSecond(#number)),
+                ParameterKind::Voltage => quote!(runtime::Volts(#number)),
+                ParameterKind::Time => {
                     let nanos = Literal::u64_unsuffixed(exact.to_nanos().unwrap_or(u64::MAX));
                     quote!(runtime::Nanos(#nanos))
                 }
-                Kind::Frequency
-                | Kind::Number
-                | Kind::Integer
-                | Kind::Count
-                | Kind::Bits(_)
-                | Kind::Sonar
-                | Kind::Robot
-                | Kind::Module
-                | Kind::File => quote!(#number),
+                ParameterKind::Frequency
+                | ParameterKind::Number
+                | ParameterKind::Integer
+                | ParameterKind::Count
+                | ParameterKind::Bits(_)
+                | ParameterKind::Sonar
+                | ParameterKind::Robot
+                | ParameterKind::Module
+                | ParameterKind::File => quote!(#number),
             }
         }
-        Value::Infinity(Kind::Time) => quote!(runtime::Nanos::MAX),
+        Value::Infinity(ParameterKind::Time) => quote!(runtime::Nanos::MAX),
         Value::Infinity(_) => quote!(u64::MAX),
         Value::Bits(bits) => quote!(runtime::Bits([#(#bits),*])),
         Value::Integer(whole) => {

@@ -7,7 +7,7 @@ use proc_macro2::Ident;
 use quote::format_ident;
 
 use super::names::{Distinct, quark_type};
-use crate::alphabet::{Alphabet, Capability, Declaration, DeclarationKind, Kind, Origin};
+use crate::alphabet::{Alphabet, Capability, Declaration, DeclarationKind, Origin, ParameterKind};
 use crate::plan::{is_time, is_way, signature};
 
 /// A quark that the robot can run, with the names of its type and of the function that constructs it.
@@ -48,7 +48,7 @@ impl<'a> Bound<'a> {
     }
 
     /// Returns the names and kinds of the quark's parameters.
-    pub(super) fn parameters(&self) -> impl Iterator<Item = (Ident, Kind)> {
+    pub(super) fn parameters(&self) -> impl Iterator<Item = (Ident, ParameterKind)> {
         let mut names = Distinct::parameters();
         self.declaration.params.iter().map(move |param| (names.parameter(&param.name), param.kind))
     }

@@ -5,7 +5,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::bound::Bound;
-use crate::alphabet::Kind;
+use crate::alphabet::ParameterKind;
 
 /// Emits the function that constructs a quark from its arguments: `const fn go(arguments: &[Argument<'_>]) ->
 /// Option<Go>`, preceded by `visibility`. The function fails to compile if the quark's type does not match the
@@ -21,7 +21,7 @@ pub(super) fn from_arguments(quark: &Bound<'_>, visibility: &TokenStream) -> Tok
     // Converts a slice to a word if the slice has the right length.
     let words = parameters
         .iter()
-        .filter(|(_, kind)| matches!(kind, Kind::Bits(_)))
+        .filter(|(_, kind)| matches!(kind, ParameterKind::Bits(_)))
         .map(|(name, _)| quote!(let Some(#name) = runtime::Bits::from_slice(#name) else { return None };));
     quote! {
         #[doc = #doc]
@@ -34,41 +34,41 @@ pub(super) fn from_arguments(quark: &Bound<'_>, visibility: &TokenStream) -> Tok
 }
 
 /// Returns the type of an argument of this kind.
-pub(super) fn argument_type(kind: Kind) -> TokenStream {
+pub(super) fn argument_type(kind: ParameterKind) -> TokenStream {
     match kind {
-        Kind::Length => quote!(runtime::Meters),
-        Kind::Speed => quote!(runtime::MetersPerSecond),
-        Kind::Angle => quote!(runtime::Radians),
-        Kind::AngularRate => quote!(runtime::RadiansPerSecond),
-        Kind::Time => quote!(runtime::Nanos),
-        Kind::Voltage => quote!(runtime::Volts),
-        Kind::Frequency | Kind::Number => quote!(f64),
-        Kind::Integer => quote!(i64),
-        Kind::Count => quote!(u64),
-        Kind::Bits(length) => {
+        ParameterKind::Length => quote!(runtime::Meters),
+        ParameterKind::Speed => quote!(runtime::MetersPerSecond),
+        ParameterKind::Angle => quote!(runtime::Radians),
+        ParameterKind::AngularRate => quote!(runtime::RadiansPerSecond),
+        ParameterKind::Time => quote!(runtime::Nanos),
+        ParameterKind::Voltage => quote!(runtime::Volts),
+        ParameterKind::Frequency | ParameterKind::Number => quote!(f64),
+        ParameterKind::Integer => quote!(i64),
+        ParameterKind::Count => quote!(u64),
+        ParameterKind::Bits(length) => {
             let length = Literal::u32_unsuffixed(length);
             quote!(runtime::Bits<#length>)
         }
-        Kind::Sonar => quote!(runtime::SonarId),
-        Kind::Robot | Kind::Module | Kind::File => quote!(&'static str),
+        ParameterKind::Sonar => quote!(runtime::SonarId),
+        ParameterKind::Robot | ParameterKind::Module | ParameterKind::File => quote!(&'static str),
     }
 }
 
 /// Returns the variant of `Argument` for a parameter of this kind.
-fn argument_variant(kind: Kind) -> Ident {
+fn argument_variant(kind: ParameterKind) -> Ident {
     let name = match kind {
-        Kind::Length => "Length",
-        Kind::Speed => "Speed",
-        Kind::Angle => "Angle",
-        Kind::AngularRate => "AngularRate",
-        Kind::Time => "Time",
-        Kind::Voltage => "Voltage",
-        Kind::Frequency | Kind::Number => "Number",
-        Kind::Integer => "Integer",
-        Kind::Count => "Count",
-        Kind::Bits(_) => "Bits",
-        Kind::Sonar => "Sonar",
-        Kind::Robot | Kind::Module | Kind::File => "Name",
+        ParameterKind::Length => "Length",
+        ParameterKind::Speed => "Speed",
+        ParameterKind::Angle => "Angle",
+        ParameterKind::AngularRate => "AngularRate",
+        ParameterKind::Time => "Time",
+        ParameterKind::Voltage => "Voltage",
+        ParameterKind::Frequency | ParameterKind::Number => "Number",
+        ParameterKind::Integer => "Integer",
+        ParameterKind::Count => "Count",
+        ParameterKind::Bits(_) => "Bits",
+        ParameterKind::Sonar => "Sonar",
+        ParameterKind::Robot | ParameterKind::Module | ParameterKind::File => "Name",
     };
     format_ident!("{name}")
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use super::token::{Tok, Token};
-use crate::alphabet::Kind;
+use crate::alphabet::ParameterKind;
 
 /// Meaning of the content after a parenthesis in a header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,7 +119,7 @@ pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s
 
 /// Returns `true` if a name is the name of a parameter type.
 fn is_type(name: &str) -> bool {
-    name == "bits" || Kind::NAMES.contains(&name)
+    name == "bits" || ParameterKind::NAMES.contains(&name)
 }
 
 /// Returns `true` if a group contains a token that cannot be in a condition, at any depth: an element, a colon, or a

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use mdle_compiler::alphabet::Kind;
+use mdle_compiler::alphabet::ParameterKind;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
 
 /// Kind of an attribute.
@@ -120,16 +120,16 @@ impl AttributeKind {
 
     /// Returns the corresponding kind in an alphabet, or `None` if plans cannot read values of this kind as numbers.
     #[must_use]
-    pub fn quantity(self) -> Option<Kind> {
+    pub fn quantity(self) -> Option<ParameterKind> {
         match self {
-            Self::Integer => Some(Kind::Integer),
-            Self::Number => Some(Kind::Number),
-            Self::Length => Some(Kind::Length),
-            Self::Speed => Some(Kind::Speed),
-            Self::Angle => Some(Kind::Angle),
-            Self::AngularRate => Some(Kind::AngularRate),
-            Self::Voltage => Some(Kind::Voltage),
-            Self::Time => Some(Kind::Time),
+            Self::Integer => Some(ParameterKind::Integer),
+            Self::Number => Some(ParameterKind::Number),
+            Self::Length => Some(ParameterKind::Length),
+            Self::Speed => Some(ParameterKind::Speed),
+            Self::Angle => Some(ParameterKind::Angle),
+            Self::AngularRate => Some(ParameterKind::AngularRate),
+            Self::Voltage => Some(ParameterKind::Voltage),
+            Self::Time => Some(ParameterKind::Time),
             Self::Flag | Self::Pose | Self::Text | Self::Numbers | Self::Bytes => None,
         }
     }

@@ -201,7 +201,7 @@ impl Declare {
         if name == AGE {
             self.refuse(format!("`{AGE}` is the time since a module published, which every module has"));
         }
-        let unit = kind.quantity().and_then(mdle_compiler::alphabet::Kind::base_unit);
+        let unit = kind.quantity().and_then(mdle_compiler::alphabet::ParameterKind::base_unit);
         About { name: name.into(), kind, unit, doc: "" }
     }
 

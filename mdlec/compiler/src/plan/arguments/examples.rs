@@ -1,23 +1,25 @@
 //! Example arguments for help texts.
 
 use super::written;
-use crate::alphabet::{Declaration, Kind, Param};
+use crate::alphabet::{Declaration, Param, ParameterKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Name, Number};
 
 /// Returns an example value for a parameter; `None` for a name that only the user can know.
 pub(in crate::plan) fn example(param: &Param) -> Option<String> {
     let value = match param.kind {
-        Kind::Length => "1m".to_owned(),
-        Kind::Speed => "20cm/s".to_owned(),
-        Kind::Angle => "90deg".to_owned(),
-        Kind::AngularRate | Kind::Number | Kind::Integer | Kind::Sonar => "0".to_owned(),
-        Kind::Time => "5s".to_owned(),
-        Kind::Voltage => "12V".to_owned(),
-        Kind::Frequency => "10Hz".to_owned(),
-        Kind::Count => "1".to_owned(),
-        Kind::Bits(length) => format!("1{}", "0".repeat((length as usize).saturating_sub(1))),
-        Kind::Robot | Kind::Module | Kind::File => return None,
+        ParameterKind::Length => "1m".to_owned(),
+        ParameterKind::Speed => "20cm/s".to_owned(),
+        ParameterKind::Angle => "90deg".to_owned(),
+        ParameterKind::AngularRate | ParameterKind::Number | ParameterKind::Integer | ParameterKind::Sonar => {
+            "0".to_owned()
+        }
+        ParameterKind::Time => "5s".to_owned(),
+        ParameterKind::Voltage => "12V".to_owned(),
+        ParameterKind::Frequency => "10Hz".to_owned(),
+        ParameterKind::Count => "1".to_owned(),
+        ParameterKind::Bits(length) => format!("1{}", "0".repeat((length as usize).saturating_sub(1))),
+        ParameterKind::Robot | ParameterKind::Module | ParameterKind::File => return None,
     };
     Some(value)
 }
@@ -32,7 +34,7 @@ pub(super) fn sonar<'s>(name: &Name<'s>) -> Option<Number<'s>> {
 
 /// Proposes `atIsection 1000` for `atIsection 1 0 0 0`.
 pub(super) fn bits_apart(call: &Call, declaration: &Declaration) -> Option<String> {
-    let [Param { kind: Kind::Bits(length), .. }] = declaration.params.as_slice() else { return None };
+    let [Param { kind: ParameterKind::Bits(length), .. }] = declaration.params.as_slice() else { return None };
     let bits = call.args.iter().map(|arg| match arg {
         Arg::Number(number) if number.unit().is_none() && matches!(number.digits(), "0" | "1") => Some(number.digits()),
         Arg::Number(_) | Arg::Infinity(_) | Arg::String(_) | Arg::Name(_) | Arg::Module(_) => None,

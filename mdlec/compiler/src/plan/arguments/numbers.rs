@@ -2,7 +2,7 @@
 
 use super::ranges::{limit, meant_in_range};
 use super::{Fitted, Fitting, Value};
-use crate::alphabet::{Kind, Origin, Param, Unit};
+use crate::alphabet::{Origin, Param, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Decimal;
 use crate::syntax::tree::Number;
@@ -47,10 +47,10 @@ impl Fitting<'_> {
         };
         let text = decimal.to_string();
         self.in_range(number, param, decimal.to_f64())?;
-        let is_sonar = param.kind == Kind::Sonar;
+        let is_sonar = param.kind == ParameterKind::Sonar;
         let allowed = if is_sonar {
             0..=15
-        } else if param.kind == Kind::Count {
+        } else if param.kind == ParameterKind::Count {
             1..=WHOLE
         } else {
             -WHOLE..=WHOLE
@@ -62,7 +62,7 @@ impl Fitting<'_> {
             return Err(if is_sonar { report.help(help) } else { report }.into());
         };
         let value = match (param.kind, u8::try_from(whole)) {
-            (Kind::Sonar, Ok(sonar)) => Value::Sonar(sonar),
+            (ParameterKind::Sonar, Ok(sonar)) => Value::Sonar(sonar),
             _ => Value::Integer(whole),
         };
         Ok((value, text))
@@ -115,7 +115,9 @@ impl Fitting<'_> {
         let units: Vec<_> = Unit::ALL.iter().filter(|unit| unit.kind == param.kind).map(|unit| unit.name).collect();
         let report = Diagnostic::new(Code::E0303, message, number.span, here);
         let report = match (param.kind, found) {
-            (Kind::Time, "m") => report.fix("for minutes write {}", number.span, format!("{}min", number.digits())),
+            (ParameterKind::Time, "m") => {
+                report.fix("for minutes write {}", number.span, format!("{}min", number.digits()))
+            }
             _ => report,
         };
         match units.split_last() {

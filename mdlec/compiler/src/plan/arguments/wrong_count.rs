@@ -2,7 +2,7 @@
 
 use super::examples::{bits_apart, example};
 use super::{signature, written};
-use crate::alphabet::{Declaration, DeclarationKind, Kind, Param, Unit};
+use crate::alphabet::{Declaration, DeclarationKind, Param, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::moves;
 use crate::syntax::tree::{Arg, Call, Number};
@@ -34,7 +34,7 @@ pub(super) fn wrong_count(call: &Call, declaration: &Declaration, needed: usize)
     if let [Arg::Name(side), amount @ ..] = call.args
         && let Some(law) = moves::meant(&Call { name: side.node, args: amount, ..*call })
         && declaration.kind == DeclarationKind::Control
-        && matches!(declaration.params.first(), Some(Param { kind: Kind::Angle, .. }))
+        && matches!(declaration.params.first(), Some(Param { kind: ParameterKind::Angle, .. }))
     {
         let message = format!("`{}` takes {takes}, and `{}` is not an argument", declaration.name, side.node);
         let found = Diagnostic::new(Code::E0301, message, side.span, "write a number with a sign");
@@ -47,7 +47,7 @@ pub(super) fn wrong_count(call: &Call, declaration: &Declaration, needed: usize)
                 let time = format!("{}{}", time.digits(), time.unit().unwrap_or_default());
                 report.help(format!("a time is waited for: `(Atom (wait {time}) {})`", call.name))
             }
-            ([Arg::Name(robot), Arg::Number(number)], [Param { kind: Kind::Robot, .. }]) => {
+            ([Arg::Name(robot), Arg::Number(number)], [Param { kind: ParameterKind::Robot, .. }]) => {
                 let name = format!("{} {}{}", call.name, robot.node, number.digits());
                 report.fix("a name has no space: {}", call.span, name)
             }
@@ -58,7 +58,7 @@ pub(super) fn wrong_count(call: &Call, declaration: &Declaration, needed: usize)
     let names: Vec<_> = missing.iter().map(|param| format!("`{}`", param.name)).collect();
     let report = report(format!("{} {} missing", names.join(" and "), if names.len() == 1 { "is" } else { "are" }));
     let examples: Option<Vec<_>> = missing.iter().map(example).collect();
-    let are_sonars = declaration.params.iter().all(|param| param.kind == Kind::Sonar);
+    let are_sonars = declaration.params.iter().all(|param| param.kind == ParameterKind::Sonar);
     if are_sonars && call.args.iter().any(|arg| !matches!(arg, Arg::Number(_))) {
         let sonars = (3..).step_by(2).take(most).map(|sonar| format!(" {sonar}")).collect::<String>();
         return report.fix("for instance {}", call.span, format!("{}{sonars}", call.name));
@@ -71,5 +71,5 @@ pub(super) fn wrong_count(call: &Call, declaration: &Declaration, needed: usize)
 
 /// Returns `true` if a number has a unit of time.
 fn is_time(number: &Number) -> bool {
-    number.unit().and_then(Unit::from_name).is_some_and(|unit| unit.kind == Kind::Time)
+    number.unit().and_then(Unit::from_name).is_some_and(|unit| unit.kind == ParameterKind::Time)
 }

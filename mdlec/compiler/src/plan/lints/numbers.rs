@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::alphabet::{Alphabet, DeclarationKind, Kind, Param, Unit};
+use crate::alphabet::{Alphabet, DeclarationKind, Param, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::parameters::Parameters;
 use crate::syntax::Files;
@@ -46,7 +46,7 @@ impl Numbers<'_> {
     fn elements(&mut self, elements: &[Element]) {
         for element in elements {
             if let Some(Frame::Turned(number)) = element.frame() {
-                self.number(number, Kind::Angle, "deg", "a frame");
+                self.number(number, ParameterKind::Angle, "deg", "a frame");
             }
             match &element.primary {
                 Primary::Atom(atom) => {
@@ -91,11 +91,12 @@ impl Numbers<'_> {
         let declarations = [name, base].into_iter().flat_map(|name| self.alphabet.declarations_of(name));
         let Some(signal) = declarations.into_iter().find(|found| found.kind == DeclarationKind::Signal) else { return };
         let Some((unit, _)) = signal.unit else { return };
-        let is_sonar = matches!(signal.params.as_slice(), [Param { kind: Kind::Sonar, .. }]) && unit.name == "m";
+        let is_sonar =
+            matches!(signal.params.as_slice(), [Param { kind: ParameterKind::Sonar, .. }]) && unit.name == "m";
         let value = number.digits().parse::<f64>().unwrap_or(0.0);
         let what = format!("the value of `{name}`");
         if name == "theta"
-            && unit.kind == Kind::Angle
+            && unit.kind == ParameterKind::Angle
             && let Some(found) = beyond_half_a_turn(number, value)
         {
             self.found.push(found);
@@ -137,16 +138,16 @@ impl Numbers<'_> {
 
     /// Checks an argument. A length in an argument is a distance to drive, so its limit is lower than the limit of a
     /// position.
-    fn argument(&mut self, number: &Number, kind: Kind, unit: &str, what: &str) {
+    fn argument(&mut self, number: &Number, kind: ParameterKind, unit: &str, what: &str) {
         let size = number.digits().parse::<f64>().map_or(0.0, f64::abs);
-        if kind == Kind::Length && unit == "m" && number.unit().is_none() && (UNUSUAL..=FAR).contains(&size) {
+        if kind == ParameterKind::Length && unit == "m" && number.unit().is_none() && (UNUSUAL..=FAR).contains(&size) {
             self.doubtful(number, unit, what, ("cm", "far for one law"));
         } else {
             self.number(number, kind, unit, what);
         }
     }
 
-    fn number(&mut self, number: &Number, kind: Kind, unit: &str, what: &str) {
+    fn number(&mut self, number: &Number, kind: ParameterKind, unit: &str, what: &str) {
         let digits = number.digits();
         let Some(value) = digits.parse::<f64>().ok().filter(|_| number.unit().is_none()) else { return };
         if let Some(doubt) = doubt(kind, unit, value) {
@@ -187,7 +188,7 @@ fn beyond_half_a_turn(number: &Number, value: f64) -> Option<Diagnostic> {
 
 /// Returns the unit that was probably meant, and the reason why a value of this kind is doubtful in `unit`; `None` if
 /// the value is plausible.
-fn doubt(kind: Kind, unit: &str, value: f64) -> Option<(&'static str, &'static str)> {
+fn doubt(kind: ParameterKind, unit: &str, value: f64) -> Option<(&'static str, &'static str)> {
     let size = value.abs();
     let is = |name: &str| Unit::from_name(name).is_some_and(|found| found.kind == kind) && unit == name;
     // The value is at most a full circle in radians.

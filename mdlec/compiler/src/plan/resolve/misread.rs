@@ -1,7 +1,7 @@
 //! Reports common mistakes that the parser accepts, and unknown plan names, with the element that was probably meant.
 
 use super::Resolver;
-use crate::alphabet::{self, DeclarationKind, Kind, Unit};
+use crate::alphabet::{self, DeclarationKind, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::arguments::{kind_words, written};
 use crate::syntax::tree::{self, Call, ConditionNode, Element, Frame, Primary};
@@ -77,7 +77,8 @@ impl<'a> Resolver<'_, 'a> {
         let (Some(Frame::Turned(number)), Primary::Ref(call)) = (element.frame(), &element.primary) else {
             return None;
         };
-        let unit = nearest_unit(call.name).and_then(Unit::from_name).filter(|unit| unit.kind == Kind::Angle)?.name;
+        let unit =
+            nearest_unit(call.name).and_then(Unit::from_name).filter(|unit| unit.kind == ParameterKind::Angle)?.name;
         if !call.args.is_empty() || number.unit().is_some() || self.definitions.get(call.name).is_some() {
             return None;
         }
@@ -134,7 +135,7 @@ impl<'a> Resolver<'_, 'a> {
             None if Unit::from_name(name).is_some() => {
                 report.help(format!("`{name}` is a unit, which touches its number: `5{name}`"))
             }
-            None if Kind::NAMES.contains(&name) => {
+            None if ParameterKind::NAMES.contains(&name) => {
                 report.help(format!("`{name}` is a type, which follows a parameter's name: `{{ Leg (x: {name}) … }}`"))
             }
             None if name == "here" => report.help("`here` follows `FRAME`: `FRAME here (Atom (bumper) stop)`"),

@@ -1,7 +1,7 @@
 //! Mistakes with labels, colons and equals signs.
 
 use super::plan_names::{name_before_plan, not_a_label};
-use crate::alphabet::Kind;
+use crate::alphabet::ParameterKind;
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
@@ -68,7 +68,7 @@ pub(super) fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
 /// Reports `=` instead of a colon in a parameter, as in `{ Leg (far = length) …`.
 fn parameter_with_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let name = site.name_at(site.at.checked_sub(1)?)?;
-    let kind = site.name_at(site.at + 1).filter(|kind| Kind::NAMES.contains(kind))?;
+    let kind = site.name_at(site.at + 1).filter(|kind| ParameterKind::NAMES.contains(kind))?;
     let is_header = site.opener()?.checked_sub(2).is_some_and(|brace| site.kind(brace) == Some(Tok::LBrace));
     let diagnostic = site.about(site.at, format!("`{name} =` is not a parameter"), "expected a colon");
     let words = "a parameter is its name, a colon and its type: {}";
