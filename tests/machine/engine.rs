@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::{CompiledPlans, Engine, Library, NoTrial, PlanEvent, PlanFacts, PlanSource, Plans, StoredPlan, When};
-use mdle_host::{Microphones, Moment, Pace, Pilot, RunTerms, StopRequest, Time, Transitions};
+use mdle_host::{Microphones, Pace, Pilot, PilotTurn, RunTerms, StopRequest, Time, Transitions};
 use mdle_runtime::{Nanometers, Nanos, Turn};
 use mdle_scripted::alphabet::Alphabet;
 use mdle_scripted::{INTERRUPTS, LAWS, Output};
@@ -54,7 +54,7 @@ impl Run {
         let bit = INTERRUPTS.iter().position(|known| *known == interrupt);
         let y = Output { fired: bit.map_or(0, |bit| 1 << bit), way: self.way, ..Output::default() };
         let t = Nanos(self.turns * 100_000_000);
-        let moment = Moment { y: &y, t, number: self.turns };
+        let moment = PilotTurn { y: &y, t, number: self.turns };
         let turn = self.engine.turn(moment, &mut Transitions::default()).unwrap();
         self.turns += 1;
         self.journal.extend(self.engine.plans_mut().take_events());

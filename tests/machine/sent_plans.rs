@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 
 use mdle_engine::link::{Content, Letter, Link, RefusedPlan, State, StateLink};
 use mdle_engine::{CompiledPlans, PlanEvent, PlanFacts, PlanSource, StoredPlan, When};
-use mdle_host::{Moment, Pilot};
+use mdle_host::{Pilot, PilotTurn};
 use mdle_runtime::{Nanos, Pose};
 use mdle_scripted::Output;
 use mdle_scripted::alphabet::Alphabet;
@@ -141,7 +141,7 @@ impl Bob {
     pub(crate) fn retreats(&mut self) {
         let y = Output::default();
         let t = Nanos(self.run.turns * 100_000_000);
-        self.run.engine.divert(loaded(IDLE).unwrap().plan(), Moment { y: &y, t, number: self.run.turns });
+        self.run.engine.divert(loaded(IDLE).unwrap().plan(), PilotTurn { y: &y, t, number: self.run.turns });
     }
 }
 

@@ -7,8 +7,8 @@ use std::sync::atomic::Ordering;
 use std::thread;
 
 use mdle_engine::{Engine, Library, PlanEvent, When};
-use mdle_host::{Microphones, Moment, Pace, Pilot as _, RunTerms, StopRequest, Time, Transitions};
-use mdle_record::{Change, RecordedTransition};
+use mdle_host::{Microphones, Pace, Pilot as _, PilotTurn, RunTerms, StopRequest, Time, Transitions};
+use mdle_record::{RecordedChange, RecordedTransition};
 use mdle_runtime::{Nanos, Robot as _, Sensed, Turn, Twist};
 use mdle_sim::{Simulated, World};
 
@@ -30,7 +30,7 @@ static SLOW_TURNS: Mutex<()> = Mutex::new(());
 struct Made {
     y: Sensed,
     t: Nanos,
-    changes: Vec<Change>,
+    changes: Vec<RecordedChange>,
     outcome: Outcome,
 }
 
@@ -46,7 +46,7 @@ fn engine(time: Time) -> Engine<Odd> {
 fn turn(engine: &mut Engine<Odd>, y: &Sensed, number: u64) -> Outcome {
     let (mut y, t, mut transitions) = (*y, Nanos(number * 100_000_000), Transitions::default());
     engine.complete(&mut y, t);
-    let turn = engine.turn(Moment { y: &y, t, number }, &mut transitions).unwrap();
+    let turn = engine.turn(PilotTurn { y: &y, t, number }, &mut transitions).unwrap();
     let steps =
         transitions.iter().map(|(made, fired)| RecordedTransition::new(made, fired.iter().map(|(number, _)| *number)));
     Outcome(turn, steps.collect(), engine.machine().map(|machine| machine.state()), engine.plan_number())
@@ -81,13 +81,13 @@ fn live() -> Vec<Made> {
 #[test]
 fn late_turns_replay_to_the_bit() {
     let turns = live();
-    let count = |kind: &Change| turns.iter().filter(|turn| turn.changes.contains(kind)).count();
-    assert!(count(&Change::Late) >= 2 && count(&Change::Back) >= 2, "{turns:?}");
+    let count = |kind: &RecordedChange| turns.iter().filter(|turn| turn.changes.contains(kind)).count();
+    assert!(count(&RecordedChange::Late) >= 2 && count(&RecordedChange::Back) >= 2, "{turns:?}");
     assert!(turns.last().unwrap().outcome.3 >= 3, "{turns:?}");
     let mut again = engine(Time::Stepped(Pace::Max)).repeating(None);
     for (number, Made { y, t, changes, outcome }) in (0..).zip(&turns) {
         for change in changes {
-            if let Change::Armed { when, .. } = change {
+            if let RecordedChange::Armed { when, .. } = change {
                 again.plans_mut().replace(loaded(SECOND).plan(), When::of_number(*when).unwrap());
             } else {
                 again.repeat(change);

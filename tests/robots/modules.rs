@@ -14,7 +14,7 @@ use mdle_engine::{
     Background, Declare, Engine, EngineAlphabet, Exchange, Fault, In, Library, Module, ModuleState, Modules, Out,
     PlanEvent, Relevance, Turn, When,
 };
-use mdle_host::{Microphones, Moment, Pace, Pilot, PilotFault, Refusal, RunTerms, StopRequest, Time, Transitions};
+use mdle_host::{Microphones, Pace, Pilot, PilotFault, PilotTurn, Refusal, RunTerms, StopRequest, Time, Transitions};
 use mdle_runtime::{self as runtime, Meters, Nanos, Pose, Radians, Robot, Sensed, Turn as PlanTurn, Twist};
 use mdle_sim::alphabet::Alphabet;
 use mdle_sim::{Simulated, World};
@@ -141,7 +141,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> Run<A> {
         let y = self.robot.exchange(&self.input).unwrap();
         self.place = y.odometry;
         let t = Nanos(self.turns * 100_000_000);
-        let moment = Moment { y: &y, t, number: self.turns };
+        let moment = PilotTurn { y: &y, t, number: self.turns };
         let turn = self.engine.turn(moment, &mut Transitions::default())?;
         self.turns += 1;
         self.input = turn.input();
@@ -152,7 +152,7 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> Run<A> {
     pub(super) fn divert(&mut self, plan: LoadedPlan<A>) {
         let y = self.robot.exchange(&self.input).unwrap();
         let t = Nanos(self.turns * 100_000_000);
-        self.engine.divert(plan, Moment { y: &y, t, number: self.turns });
+        self.engine.divert(plan, PilotTurn { y: &y, t, number: self.turns });
     }
 
     /// Drives until the plan is over, for at most a minute, and returns the inputs.

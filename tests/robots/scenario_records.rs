@@ -11,7 +11,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use mdle_record::frames::Frames;
-use mdle_record::{Change, RecordFile, RecordedTurn, Records, TurnMade};
+use mdle_record::{RecordFile, RecordedChange, RecordedTurn, Records, TurnMade};
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::repository::root;
 
@@ -113,7 +113,8 @@ fn without_peers(folder: &Path, from: &str, to: &str) {
     let turns: Vec<_> = turns.map(Result::unwrap).collect();
     frames.begin(&begin, &turns[0].y, &mut bytes);
     for RecordedTurn { number, t, y, sent, applied, plan, state, steps, changes, .. } in turns {
-        let changes: Vec<_> = changes.into_iter().filter(|change| !matches!(change, Change::Peer { .. })).collect();
+        let changes: Vec<_> =
+            changes.into_iter().filter(|change| !matches!(change, RecordedChange::Peer { .. })).collect();
         let made = TurnMade { number, t, sent, applied, plan, state, changes: &changes, overruled: None };
         frames.turn(made, &y, steps.into_iter(), &mut bytes);
     }
@@ -162,7 +163,8 @@ fn recorded_ways_are_recorded() {
         let record = format!("run.{robot}.mcap");
         assert_same(&folder, &record);
         let (_, turns) = Records::open(fs::File::open(folder.join(record)).unwrap()).unwrap();
-        let paths = turns.flat_map(|turn| turn.unwrap().changes).filter(|change| matches!(change, Change::Path { .. }));
+        let paths =
+            turns.flat_map(|turn| turn.unwrap().changes).filter(|change| matches!(change, RecordedChange::Path { .. }));
         let is_recording = robot != "robot2";
         assert_eq!(paths.count() >= 3, is_recording, "{robot}");
     }

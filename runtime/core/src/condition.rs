@@ -35,7 +35,7 @@ pub enum Condition<I> {
 }
 
 /// Values that a condition reads.
-pub(crate) struct Reading<'r, I, Y, M> {
+pub(crate) struct ConditionValues<'r, I, Y, M> {
     pub(crate) y: &'r Y,
     /// Time since the scope of the condition was entered.
     pub(crate) since: Nanos,
@@ -51,7 +51,7 @@ pub(crate) struct Reading<'r, I, Y, M> {
 impl<I> Condition<I> {
     /// Returns `true` if the condition has fired. Operands with numbers below `from` are ignored. The recursion is as
     /// deep as parentheses are nested in the condition's text.
-    pub(crate) fn fired<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> bool
+    pub(crate) fn fired<Y, M: Memory>(&self, at: &ConditionValues<'_, I, Y, M>, from: u32) -> bool
     where
         I: Interrupt<Y>,
     {
@@ -77,7 +77,7 @@ impl<I> Condition<I> {
 
     /// Returns the index, from 0, of the first operand that has fired if the condition is an OR; 0 for any other
     /// condition.
-    pub(crate) fn cause<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>) -> u32
+    pub(crate) fn cause<Y, M: Memory>(&self, at: &ConditionValues<'_, I, Y, M>) -> u32
     where
         I: Interrupt<Y>,
     {
@@ -91,7 +91,7 @@ impl<I> Condition<I> {
 
     /// Returns the lowest memory number, from `from` on, of a RISING in the condition whose operand has not fired;
     /// `None` if there is no such RISING.
-    pub(crate) fn first_low<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Option<u32>
+    pub(crate) fn first_low<Y, M: Memory>(&self, at: &ConditionValues<'_, I, Y, M>, from: u32) -> Option<u32>
     where
         I: Interrupt<Y>,
     {
@@ -106,7 +106,7 @@ impl<I> Condition<I> {
 
     /// Calls `tell` with the memory number of every RISING in the condition whose operand has not fired. Operands with
     /// numbers below `from` are ignored.
-    pub(crate) fn low<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32, tell: &mut impl FnMut(u32))
+    pub(crate) fn low<Y, M: Memory>(&self, at: &ConditionValues<'_, I, Y, M>, from: u32, tell: &mut impl FnMut(u32))
     where
         I: Interrupt<Y>,
     {

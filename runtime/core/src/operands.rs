@@ -4,7 +4,7 @@
 //! The operands of a condition are the parts that AND and OR join, from left to right. A NOT or RISING is one operand
 //! together with its own operand.
 
-use crate::condition::Reading;
+use crate::condition::ConditionValues;
 use crate::fsm::Kind;
 use crate::{Condition, Cursor, Entries, Examined, Fsm, Interrupt, Measured, Memory, Nanos, Slots};
 
@@ -35,14 +35,18 @@ impl<I> Conditions<'_, I> {
             return;
         };
         let (since, way, stalled) = (cursor.since(level, t), cursor.way(level), cursor.stalled());
-        condition.tell_fired(&Reading { y, since, way, stalled, level, operands: self.operands, memory: &() }, tell);
+        condition
+            .tell_fired(&ConditionValues { y, since, way, stalled, level, operands: self.operands, memory: &() }, tell);
     }
 }
 
 impl<I> Condition<I> {
     /// Calls `tell` with the number and the values of each fired operand, in order.
-    pub(crate) fn tell_fired<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, tell: &mut dyn FnMut(u32, Measured))
-    where
+    pub(crate) fn tell_fired<Y, M: Memory>(
+        &self,
+        at: &ConditionValues<'_, I, Y, M>,
+        tell: &mut dyn FnMut(u32, Measured),
+    ) where
         I: Interrupt<Y>,
     {
         let mut number: u32 = 0;
@@ -55,8 +59,12 @@ impl<I> Condition<I> {
     }
 
     /// Calls `tell` with the value of the condition and of all its parts; a part comes before its own operands.
-    pub(crate) fn examine<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32, tell: &mut dyn FnMut(Examined))
-    where
+    pub(crate) fn examine<Y, M: Memory>(
+        &self,
+        at: &ConditionValues<'_, I, Y, M>,
+        from: u32,
+        tell: &mut dyn FnMut(Examined),
+    ) where
         I: Interrupt<Y>,
     {
         tell(Examined { fired: self.fired(at, from), measured: self.measured(at, from) });
@@ -90,7 +98,7 @@ impl<I> Condition<I> {
 
     /// Returns the values from which an operand was evaluated. For a NOT or RISING, these are the values of its own
     /// operand; an AND or OR has none.
-    fn measured<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Measured
+    fn measured<Y, M: Memory>(&self, at: &ConditionValues<'_, I, Y, M>, from: u32) -> Measured
     where
         I: Interrupt<Y>,
     {

@@ -2,7 +2,7 @@
 
 mod examined;
 
-use crate::condition::Reading;
+use crate::condition::ConditionValues;
 use crate::fsm::Kind;
 use crate::{
     Alphabet, Begin, Cause, Completes, Condition, Control, Cursor, Ending, Entries, Fsm, Guard, Interrupt, Law, LawRow,
@@ -136,10 +136,10 @@ fn reading<'r, T: Table, E: Entries, P: Slots<u64>, M>(
     cursor: &Cursor<E, P>,
     y: &'r OutputOf<T>,
     t: Nanos,
-) -> Reading<'r, InterruptOf<T>, OutputOf<T>, M> {
+) -> ConditionValues<'r, InterruptOf<T>, OutputOf<T>, M> {
     let (since, way) = (cursor.since(guard.level, t), cursor.way(guard.level));
     let (stalled, level) = (cursor.stalled(), guard.level);
-    Reading { y, since, way, stalled, level, operands: table.operands(), memory }
+    ConditionValues { y, since, way, stalled, level, operands: table.operands(), memory }
 }
 
 impl<T: Table, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory> Plan for InRows<T, E, P, M> {

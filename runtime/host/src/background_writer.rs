@@ -45,11 +45,11 @@ pub(crate) struct Outlet {
     lost: bool,
     /// `true` once the writer no longer waits for the reader.
     given_up: bool,
-    shared: Arc<Shared>,
+    shared: Arc<WriterQueue>,
 }
 
 #[derive(Debug)]
-struct Shared {
+struct WriterQueue {
     queue: Mutex<Queue>,
     changed: Condvar,
 }
@@ -67,7 +67,7 @@ struct Queue {
     has_ended: bool,
 }
 
-impl Shared {
+impl WriterQueue {
     fn queue(&self) -> MutexGuard<'_, Queue> {
         // No code panics while it holds this lock.
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
@@ -113,7 +113,7 @@ impl Outlet {
             error: None,
             has_ended: false,
         };
-        let shared = Arc::new(Shared { queue: Mutex::new(queue), changed: Condvar::new() });
+        let shared = Arc::new(WriterQueue { queue: Mutex::new(queue), changed: Condvar::new() });
         let writer = Arc::clone(&shared);
         Builder::new().name("writer".to_owned()).stack_size(STACK).spawn(move || write_all(sink, &writer))?;
         Ok(Self { piece: Vec::new(), keeps, patience: patience.clone(), lost: false, given_up: false, shared })
@@ -238,7 +238,7 @@ impl Drop for Outlet {
 
 /// A handle of an outlet, for messages from threads that cannot wait.
 #[derive(Debug, Clone)]
-pub(crate) struct Aside(Arc<Shared>);
+pub(crate) struct Aside(Arc<WriterQueue>);
 
 impl Aside {
     /// Passes a text to the outlet, or drops it if there is no space.
@@ -249,7 +249,7 @@ impl Aside {
 }
 
 /// Writes all pieces of text until the queue is closed.
-fn write_all(mut sink: impl Write, shared: &Shared) {
+fn write_all(mut sink: impl Write, shared: &WriterQueue) {
     let written = loop {
         let mut queue = shared.queue();
         while queue.pieces.is_empty() && !queue.is_closed {
@@ -270,7 +270,7 @@ fn write_all(mut sink: impl Write, shared: &Shared) {
 }
 
 /// Writes a piece of text, and records the progress.
-fn write_piece(sink: &mut impl Write, piece: &[u8], shared: &Shared) -> io::Result<()> {
+fn write_piece(sink: &mut impl Write, piece: &[u8], shared: &WriterQueue) -> io::Result<()> {
     for chunk in piece.chunks(CHUNK) {
         sink.write_all(chunk)?;
         sink.flush()?;

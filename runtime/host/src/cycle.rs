@@ -16,7 +16,7 @@ use crate::timing::Timing;
 
 /// Limits at which a run ends although its plan has not ended.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
+pub(crate) struct RunLimits {
     /// Time of the run at which the run ends. The turn at this time is still made, because the plan may end in it.
     pub(crate) timeout: Option<Duration>,
     /// Number of turns after which the run ends.
@@ -60,7 +60,7 @@ pub(crate) trait Turns {
 /// The robot still executes its last input: the caller must send the null input and stop the robot, also after a panic.
 pub(crate) fn cycle<I: Instants>(
     turns: &mut dyn Turns,
-    limits: Limits,
+    limits: RunLimits,
     clock: &mut Clock<I>,
     signals: &Signals,
 ) -> RunEnd {
@@ -102,7 +102,7 @@ pub(crate) fn cycle<I: Instants>(
     ending
 }
 
-impl Limits {
+impl RunLimits {
     /// Returns the limit that a run has reached after `turns` turns, the last of them at time `t`, if its plan has not
     /// ended.
     fn reached(&self, turns: u64, t: Nanos) -> Option<RunEnd> {

@@ -4,7 +4,7 @@
 use std::any::Any;
 use std::time::Duration;
 
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::{MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Sensed, Turn, Twist};
 
 use crate::helm::Helm;
@@ -15,7 +15,7 @@ use crate::report::ReportWriter;
 use crate::run_end::RunEnd;
 use crate::timing::Timing;
 use crate::transitions::Transitions;
-use crate::{Break, Intervention, Orders, SettingsOf, Supervisor};
+use crate::{Break, BreakOrders, Intervention, SettingsOf, Supervisor};
 
 /// A robot with the plan that drives it: exchanges and turns alternate, beginning with an exchange.
 pub(crate) trait Drive {
@@ -46,7 +46,7 @@ pub(crate) trait Drive {
     /// Starts recording the changes that [`Drive::take_changes`] returns; called before the first turn.
     fn record(&mut self);
     /// Removes and returns the changes that influenced the last turn, besides its output.
-    fn take_changes(&mut self) -> Vec<Change>;
+    fn take_changes(&mut self) -> Vec<RecordedChange>;
     /// Makes turn `number` with the last output at time `t`; the first turn begins the plan.
     ///
     /// # Errors
@@ -70,7 +70,12 @@ pub(crate) trait Drive {
     fn after_plan(&mut self) -> AfterPlan;
     /// Calls the supervisor, if there is one, at a break: after this number of turns, the last of them at this time,
     /// with `true` if the plan is over. `timing` is about the turns, in real time.
-    fn at_break(&mut self, moment: (u64, Nanos, bool), report: &ReportWriter<'_>, timing: Option<&Timing>) -> Orders;
+    fn at_break(
+        &mut self,
+        moment: (u64, Nanos, bool),
+        report: &ReportWriter<'_>,
+        timing: Option<&Timing>,
+    ) -> BreakOrders;
     /// Passes the last state of a run that ends before its plan, after `turns` turns, to the supervisor, if there is
     /// one.
     fn at_end(&mut self, turns: u64, t: Nanos, report: &ReportWriter<'_>, timing: Option<&Timing>);
@@ -166,7 +171,7 @@ where
         self.helm.record();
     }
 
-    fn take_changes(&mut self) -> Vec<Change> {
+    fn take_changes(&mut self) -> Vec<RecordedChange> {
         self.helm.take_changes()
     }
 
@@ -215,10 +220,15 @@ where
         self.helm.pilot_mut().after_plan()
     }
 
-    fn at_break(&mut self, moment: (u64, Nanos, bool), report: &ReportWriter<'_>, timing: Option<&Timing>) -> Orders {
+    fn at_break(
+        &mut self,
+        moment: (u64, Nanos, bool),
+        report: &ReportWriter<'_>,
+        timing: Option<&Timing>,
+    ) -> BreakOrders {
         let (turns, t, is_over) = moment;
-        let Self { robot, helm, settings, output: Some(y), .. } = self else { return Orders::default() };
-        let Some((supervisor, pilot, input)) = helm.parts() else { return Orders::default() };
+        let Self { robot, helm, settings, output: Some(y), .. } = self else { return BreakOrders::default() };
+        let Some((supervisor, pilot, input)) = helm.parts() else { return BreakOrders::default() };
         let (settings, course) = (settings.map(|settings| settings(robot)), report.course());
         supervisor.at_break(&mut Break { turns, t, y, input, is_over, pilot, settings, course, timing })
     }

@@ -11,7 +11,7 @@ use crate::drive::{Drive, PilotOnRobot};
 use crate::helm::{Helm, Supervised};
 use crate::pilot::{MakePilot, Pilot, RunTerms};
 use crate::position::Texts;
-use crate::runs::Runs;
+use crate::runs::BatchRuns;
 use crate::target_options::TargetOptions;
 use crate::{Microphones, Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
 
@@ -41,7 +41,8 @@ pub(crate) trait Executable: Sync {
     ///
     /// # Errors
     /// Fails if an option is invalid, or if a fault has occurred.
-    fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal>;
+    fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore)
+    -> Result<Option<BatchRuns<'_>>, Refusal>;
 }
 
 /// Executable of a plan for the target `T`. The pilot `B` computes the inputs of its runs.
@@ -128,7 +129,12 @@ where
         self.drive(robot, pilot, store, &terms)
     }
 
-    fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal> {
+    fn batch(
+        &self,
+        matches: &ArgMatches,
+        period: Duration,
+        store: PathStore,
+    ) -> Result<Option<BatchRuns<'_>>, Refusal> {
         let Some(observation) = T::OBSERVATION else { return Ok(None) };
         let batch = (observation.batch)(matches, period)?;
         if batch.is_some() && self.session().is_some() {
@@ -145,6 +151,6 @@ where
                 Err(Refusal::Ended(Ok(()))) => Err("the run was asked to end before it began".to_owned()),
             }
         };
-        Ok(batch.map(|batch| Runs::of(batch, drive)))
+        Ok(batch.map(|batch| BatchRuns::of(batch, drive)))
     }
 }

@@ -3,10 +3,10 @@
 use std::any::Any;
 use std::fmt;
 
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::{Nanos, Plan, Turn, Twist};
 
-use crate::pilot::{Moment, Pilot, PilotFault};
+use crate::pilot::{Pilot, PilotFault, PilotTurn};
 use crate::transitions::Transitions;
 use crate::{Intervention, PilotInput, PilotOutput, Supervisor, Verdict};
 
@@ -67,9 +67,9 @@ where
         let diversion = self.diversion();
         self.pilot.complete(y, t);
         if let Some(plan) = diversion {
-            self.pilot.divert(plan, Moment { y, t, number });
+            self.pilot.divert(plan, PilotTurn { y, t, number });
         }
-        let turn = self.pilot.turn(Moment { y, t, number }, transitions)?;
+        let turn = self.pilot.turn(PilotTurn { y, t, number }, transitions)?;
         let kind = match turn {
             Turn::Law(_) => Turn::Law(()),
             Turn::Cut => Turn::Cut,
@@ -144,7 +144,7 @@ where
     }
 
     /// Removes and returns the changes that influenced the last turn, besides its output.
-    pub(crate) fn take_changes(&mut self) -> Vec<Change> {
+    pub(crate) fn take_changes(&mut self) -> Vec<RecordedChange> {
         let mut changes = self.pilot.take_changes();
         changes.extend(self.supervisor_mut().map(Supervisor::take_changes).unwrap_or_default());
         changes

@@ -101,18 +101,18 @@ use mdle_runtime::{Plan, Robot};
 pub use microphones::{EarsOf, Microphones};
 pub use named_file::NamedFile;
 pub use observation::{Observation, SeveralRuns};
-pub use observer::{Around, Ended, Judgement, Observer, PlanPosition};
+pub use observer::{EnclosingScope, Ended, Judgement, Observer, PlanPosition};
 pub use operand_text::{is_condition, is_operand};
 pub use output_format::output_format;
 pub use passes::{Passes, outwards};
 pub use paths::setpoints;
 use patience::Patience;
 use pilot::PlanAlone;
-pub use pilot::{AfterPlan, Moment, Pilot, PilotFault, RunTerms};
+pub use pilot::{AfterPlan, Pilot, PilotFault, PilotTurn, RunTerms};
 pub use piped::read_piped_text;
 pub use position::Texts;
 pub use program::Program;
-pub use progress::Progress;
+pub use progress::ProgressLine;
 pub use refusal::Refusal;
 pub use replays::Replays;
 pub use robot_record::{RobotRecord, RobotTurn};
@@ -121,8 +121,8 @@ pub use run_log::is_record;
 pub use scheduling::claim_for_worker;
 pub use stop_request::StopRequest;
 pub use supervisor::{
-    Break, Intervention, LimitedQuantity, MakeSupervisor, Orders, PilotInput, PilotOutput, Supervision, Supervisor,
-    Verdict,
+    Break, BreakOrders, Intervention, LimitedQuantity, MakeSupervisor, PilotInput, PilotOutput, Supervision,
+    Supervisor, Verdict,
 };
 pub use target::Target;
 pub use time::{Pace, Time};

@@ -24,7 +24,7 @@ pub(crate) struct Log {
 }
 
 /// A turn for the run log.
-pub(crate) struct Entry<'a> {
+pub(crate) struct LogEntry<'a> {
     /// Plan, for its texts.
     pub(crate) plan: &'a dyn Texts,
     /// Number of the turn, from 0.
@@ -47,7 +47,7 @@ pub(crate) struct Entry<'a> {
     pub(crate) supervised: &'a Supervised,
 }
 
-impl Entry<'_> {
+impl LogEntry<'_> {
     /// Returns the additional keys of a turn with a supervisor as JSON, each with a leading comma; `None` if there are
     /// none.
     fn more(&self) -> Option<String> {
@@ -140,8 +140,8 @@ impl Log {
     ///
     /// # Errors
     /// Fails if the file cannot be written, for example because the disk is full.
-    pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
-        let Entry { plan, turn, t, state, applied, frame, transitions, .. } = *entry;
+    pub(crate) fn turn(&mut self, entry: &LogEntry<'_>) -> io::Result<()> {
+        let LogEntry { plan, turn, t, state, applied, frame, transitions, .. } = *entry;
         let law = applied.map(|atom| plan.law(atom));
         let source = plan.source();
         let fired = transitions.iter().map(|(transition, operands)| {

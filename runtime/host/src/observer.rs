@@ -61,7 +61,7 @@ pub struct PlanPosition<'a> {
     /// Reason why the atom runs: the operands that fired, with their values; empty for the plan's first atom.
     pub since: &'a str,
     /// Scopes that enclose the atom, from the plan to the atom's own scope.
-    pub scopes: Vec<Around<'a>>,
+    pub scopes: Vec<EnclosingScope<'a>>,
 }
 
 /// The end of a run's turns, in words for people.
@@ -79,7 +79,7 @@ pub struct Ended<'a> {
 
 /// A scope that encloses the current atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Around<'a> {
+pub struct EnclosingScope<'a> {
     /// Name of the scope; empty for an atom.
     pub name: &'a str,
     /// Text of the condition of the scope's interrupt.

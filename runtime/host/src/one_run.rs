@@ -12,8 +12,8 @@ use crate::drive::Drive;
 use crate::executable::Executable;
 use crate::held_report::HeldReport;
 use crate::instants::{Instants, nanos};
-use crate::paths::Recorder;
-use crate::progress::Progress;
+use crate::paths::PathRecording;
+use crate::progress::ProgressLine;
 use crate::ready::{KnownFiles, Ready, is_watched, ready};
 use crate::report::ReportWriter;
 use crate::required::Required;
@@ -121,7 +121,7 @@ fn with_witnesses<'e>(
         Err(error) => return RunEnd::Log(error.to_string()),
     };
     let (progress, err): (_, Option<&mut dyn Write>) = match elapsed {
-        Some(now) => (Some(Progress::new(err, now)), None),
+        Some(now) => (Some(ProgressLine::new(err, now)), None),
         None => (None, Some(err)),
     };
     let path = ready.path.as_mut().ok().and_then(Option::as_mut);
@@ -145,9 +145,9 @@ fn end(
     let ending = way_out::judge(&mut *drive, ending, required, report);
     let orderly = orderly && ending.is_orderly();
     signals.patience().stop_was_tried(Some(ending.status(&faults)));
-    let files = way_out::Files {
+    let files = way_out::EndFiles {
         log: log.ok().flatten(),
-        path: path.and_then(|path| path.map_or(Ok(()), Recorder::close)).err(),
+        path: path.and_then(|path| path.map_or(Ok(()), PathRecording::close)).err(),
         views,
     };
     let status = way_out::tell(&mut *drive, ending, orderly, faults, report, files, err);

@@ -9,7 +9,7 @@ const TOLERANCE: f64 = 1e-9;
 
 /// A word or a number of a condition.
 #[derive(Debug, PartialEq)]
-enum Token<'a> {
+enum OperandToken<'a> {
     /// A name, an operator, a text in quotes, or a number whose leading zeros are significant.
     Word(&'a str),
     /// A number in the base unit of its quantity, or as written if it has no unit.
@@ -37,7 +37,7 @@ pub fn is_condition(text: &str, condition: &str) -> bool {
 const NO_OPERAND: OperandWords<'static> =
     OperandWords { text: "", written: "", at: mdle_runtime::SourceLine { file: 0, line: 0 }, values: &[] };
 
-impl Token<'_> {
+impl OperandToken<'_> {
     fn is(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Number(kind, one), Self::Number(other_kind, other)) => {
@@ -49,16 +49,16 @@ impl Token<'_> {
 }
 
 /// Returns the words of a condition, in which numbers without a unit have the unit `unit`.
-fn tokens<'a>(text: &'a str, unit: &str) -> Vec<Token<'a>> {
+fn tokens<'a>(text: &'a str, unit: &str) -> Vec<OperandToken<'a>> {
     let mut tokens = Vec::new();
     let mut rest = text.trim_start();
     while let Some(first) = rest.chars().next() {
-        let is_time = matches!(tokens.last(), Some(Token::Word("wait")));
+        let is_time = matches!(tokens.last(), Some(OperandToken::Word("wait")));
         let (token, length) = if first.is_ascii_digit() || first == '.' {
             number(rest, if is_time { "s" } else { unit })
         } else {
             let length = word_length(rest, first);
-            (Token::Word(rest.get(..length).unwrap_or(rest)), length)
+            (OperandToken::Word(rest.get(..length).unwrap_or(rest)), length)
         };
         tokens.push(token);
         rest = rest.get(length..).unwrap_or("").trim_start();
@@ -78,7 +78,7 @@ fn word_length(rest: &str, first: char) -> usize {
 }
 
 /// Returns the number at the start of `rest` with its unit, or with `bare` if it has none, and the length in bytes.
-fn number<'a>(rest: &'a str, bare: &str) -> (Token<'a>, usize) {
+fn number<'a>(rest: &'a str, bare: &str) -> (OperandToken<'a>, usize) {
     let is_part = |letter: char| letter.is_ascii_digit() || letter == '.';
     let mantissa = rest.find(|letter| !is_part(letter)).unwrap_or(rest.len());
     let after = rest.get(mantissa..).unwrap_or("");
@@ -98,9 +98,9 @@ fn number<'a>(rest: &'a str, bare: &str) -> (Token<'a>, usize) {
                 Some((kind, factor, divisor)) => (Some(kind), value * factor / divisor),
                 None => (None, value),
             };
-            (Token::Number(kind, value), end + length)
+            (OperandToken::Number(kind, value), end + length)
         }
-        Ok(_) | Err(_) => (Token::Word(digits), end),
+        Ok(_) | Err(_) => (OperandToken::Word(digits), end),
     }
 }
 

@@ -13,7 +13,7 @@ use std::time::Duration;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use mdle_runtime::{PathStore, Setpoint, StoredPath, Twist};
 
-pub(crate) use record::Recorder;
+pub(crate) use record::PathRecording;
 use text::{APART, TextFault};
 
 use crate::Refusal;

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::{Machine, Nanos, Plan, Turn};
 
 use crate::transitions::Transitions;
@@ -25,12 +25,12 @@ pub trait Pilot {
     /// Returns the reason if the run must end although the robot has no fault.
     fn turn(
         &mut self,
-        moment: Moment<'_, <Self::Plan as Plan>::Output>,
+        moment: PilotTurn<'_, <Self::Plan as Plan>::Output>,
         transitions: &mut Transitions,
     ) -> Result<Turn<<Self::Plan as Plan>::Input>, PilotFault>;
 
     /// Replaces the plan by `plan`, which begins in this turn, on request of a supervisor.
-    fn divert(&mut self, plan: Self::Plan, moment: Moment<'_, <Self::Plan as Plan>::Output>);
+    fn divert(&mut self, plan: Self::Plan, moment: PilotTurn<'_, <Self::Plan as Plan>::Output>);
 
     /// Returns the number of the current plan, from 1; each plan that replaces a plan has the next number.
     fn plan_number(&self) -> u64;
@@ -68,14 +68,14 @@ pub trait Pilot {
 
     /// Removes and returns the changes that influenced the last turn, besides the robot's output, in order. With these
     /// changes and the outputs, the run can be repeated.
-    fn take_changes(&mut self) -> Vec<Change> {
+    fn take_changes(&mut self) -> Vec<RecordedChange> {
         Vec::new()
     }
 }
 
 /// A turn of a run.
 #[derive(Debug)]
-pub struct Moment<'y, Y> {
+pub struct PilotTurn<'y, Y> {
     /// Output of the robot.
     pub y: &'y Y,
     /// Time of the run at which the output was read; the first output is at time 0.
@@ -140,14 +140,14 @@ impl<P: Plan> Pilot for PlanAlone<'_, P> {
 
     fn turn(
         &mut self,
-        Moment { y, t, .. }: Moment<'_, P::Output>,
+        PilotTurn { y, t, .. }: PilotTurn<'_, P::Output>,
         transitions: &mut Transitions,
     ) -> Result<Turn<P::Input>, PilotFault> {
         let machine = self.machine.get_or_insert_with(|| Machine::begin((self.plan)(), y, t));
         Ok(machine.turn(y, t, transitions))
     }
 
-    fn divert(&mut self, plan: P, Moment { y, t, .. }: Moment<'_, P::Output>) {
+    fn divert(&mut self, plan: P, PilotTurn { y, t, .. }: PilotTurn<'_, P::Output>) {
         self.machine = Some(Machine::begin(plan, y, t));
         self.number = self.number.saturating_add(1);
     }

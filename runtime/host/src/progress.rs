@@ -17,7 +17,7 @@ const LETTERS: usize = 76;
 const BAR: usize = 30;
 
 /// A line on standard error that is updated in place, and erased when it is dropped.
-pub struct Progress<'e> {
+pub struct ProgressLine<'e> {
     err: &'e mut dyn Write,
     /// Function that returns the time since the work began.
     now: Box<dyn FnMut() -> Duration + 'e>,
@@ -25,13 +25,13 @@ pub struct Progress<'e> {
     shown: bool,
 }
 
-impl fmt::Debug for Progress<'_> {
+impl fmt::Debug for ProgressLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Progress").field("next", &self.next).field("shown", &self.shown).finish_non_exhaustive()
+        f.debug_struct("ProgressLine").field("next", &self.next).field("shown", &self.shown).finish_non_exhaustive()
     }
 }
 
-impl<'e> Progress<'e> {
+impl<'e> ProgressLine<'e> {
     /// Returns a line on `err`; `now` returns the time since the work began.
     pub fn new(err: &'e mut dyn Write, now: Box<dyn FnMut() -> Duration + 'e>) -> Self {
         Self { err, now, next: EVERY, shown: false }
@@ -96,7 +96,7 @@ impl<'e> Progress<'e> {
     }
 }
 
-impl Drop for Progress<'_> {
+impl Drop for ProgressLine<'_> {
     fn drop(&mut self) {
         self.clear();
     }
@@ -114,7 +114,7 @@ mod tests {
         let (mut err, mut out) = (Vec::new(), Vec::new());
         out.extend_from_slice(b"one\n");
         let mut report = ReportWriter::new(&mut out, false);
-        let mut progress = Progress::new(&mut err, Box::new(|| time.get()));
+        let mut progress = ProgressLine::new(&mut err, Box::new(|| time.get()));
         for (millis, t) in [(0, 0), (99, 50), (100, 60), (150, 80), (201, 100)] {
             time.set(Duration::from_millis(millis));
             progress.run(Nanos(t * 1_000_000_000), "goAvoid 0 40 20", &mut report);
@@ -133,7 +133,7 @@ mod tests {
             seconds += 1;
             Duration::from_secs(seconds)
         });
-        let mut progress = Progress::new(&mut err, clock);
+        let mut progress = ProgressLine::new(&mut err, clock);
         for (done, all) in [(1, 4), (2, 4), (4, 4), (u64::MAX / 31, u64::MAX)] {
             progress.runs(done, all);
         }

@@ -12,7 +12,7 @@ use crate::arguments::SharedOptions;
 use crate::drive::Drive;
 use crate::executable::Executable;
 use crate::log::UnchangedFile;
-use crate::paths::{self, Recorder};
+use crate::paths::{self, PathRecording};
 use crate::record::RecordWriter;
 use crate::run_log::{Format, RunLog, is_record};
 use crate::safety::{Panicked, shielded};
@@ -31,7 +31,7 @@ pub(crate) struct Ready<'p> {
     /// stopped.
     pub(crate) log: io::Result<Option<RunLog>>,
     /// Recorder of the driven path, if the path is recorded.
-    pub(crate) path: io::Result<Option<Recorder>>,
+    pub(crate) path: io::Result<Option<PathRecording>>,
     /// Views by odometry, if the options request them.
     pub(crate) views: Option<ByOdometry>,
 }
@@ -61,7 +61,7 @@ pub(crate) fn ready<'p>(
         signals.robot_runs(time);
         let drive = executable.connect(matches, options.period, &signals.stop_request(), store)?;
         let log = log.map(|file| begun(file, options, begin, is_watched(time), signals)).transpose();
-        let path = path.map(|file| file.emptied(signals.patience()).map(Recorder::new)).transpose();
+        let path = path.map(|file| file.emptied(signals.patience()).map(PathRecording::new)).transpose();
         Ok(Ready { drive, time, log, path, views })
     });
     opened.unwrap_or_else(bug_before)

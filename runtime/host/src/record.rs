@@ -7,7 +7,7 @@
 use std::io::{self, Write};
 
 use mdle_record::frames::Frames;
-use mdle_record::{Applied, Begin, Change, Overruled, RecordedTransition, TurnMade};
+use mdle_record::{Applied, Begin, Overruled, RecordedChange, RecordedTransition, TurnMade};
 use mdle_runtime::trace::{Json, Seconds};
 use mdle_runtime::{Nanos, Sensed, Turn, Twist};
 
@@ -15,7 +15,7 @@ use crate::Intervention;
 use crate::background_writer::Outlet;
 use crate::cause::CauseText;
 use crate::drive::Exact;
-use crate::log::Entry;
+use crate::log::LogEntry;
 use crate::supervised::Supervised;
 use crate::transitions::Operand;
 
@@ -32,7 +32,7 @@ pub(crate) struct RecordWriter<W = Outlet> {
     /// Output of the turn, the input that the plan requested, and the input that is sent.
     exact: Option<(Sensed, Twist, Twist)>,
     /// Changes that influenced the turn, besides its output.
-    changes: Vec<Change>,
+    changes: Vec<RecordedChange>,
     has_begun: bool,
     /// `true` if each second of the run is written to the file at once; `false` at the fastest pace.
     prompt: bool,
@@ -66,7 +66,7 @@ impl<W: Write> RecordWriter<W> {
     }
 
     /// Stores the output and the input of a turn, and the changes that influenced the turn besides the output.
-    pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<Change>) {
+    pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<RecordedChange>) {
         self.exact = exact.map(|Exact { y, asked, sent }| (*y, asked, sent));
         self.changes = changes;
     }
@@ -75,8 +75,8 @@ impl<W: Write> RecordWriter<W> {
     ///
     /// # Errors
     /// Fails if the file cannot be written, for example because the disk is full.
-    pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
-        let Entry { turn, t, state, kind, transitions, plan_number, supervised, .. } = *entry;
+    pub(crate) fn turn(&mut self, entry: &LogEntry<'_>) -> io::Result<()> {
+        let LogEntry { turn, t, state, kind, transitions, plan_number, supervised, .. } = *entry;
         let applied = match kind {
             Turn::Law(()) => Applied::Law,
             Turn::Cut => Applied::Cut,
@@ -155,8 +155,8 @@ impl<W: Write> RecordWriter<W> {
     }
 
     /// Writes the transitions of a turn for users and viewers.
-    fn transitions(&mut self, entry: &Entry<'_>) {
-        let Entry { plan, turn, t, transitions, .. } = *entry;
+    fn transitions(&mut self, entry: &LogEntry<'_>) {
+        let LogEntry { plan, turn, t, transitions, .. } = *entry;
         for (transition, operands) in transitions.iter() {
             let source = plan.source();
             let texts = operands.iter().filter_map(|(number, _)| source.operand(transition.scope, *number));

@@ -10,7 +10,7 @@ use crate::Clocked;
 use crate::cause::{CauseText, place};
 use crate::holds::Holds;
 use crate::position::Texts;
-use crate::standing::Course;
+use crate::standing::RunCourse;
 use crate::supervised::Supervised;
 use crate::transitions::{Operand, Transitions};
 use crate::{Judgement, Verdict};
@@ -23,7 +23,7 @@ pub(crate) struct ReportWriter<'a> {
     /// State of the report: after an error nothing more is written. The error is kept, unless the reader has closed the
     /// stream.
     state: ReportState,
-    course: Course,
+    course: RunCourse,
     /// End of the plan; `None` until the plan has ended.
     over: Option<Over>,
     /// Strength and rule of the intervention in the last turn; `None` if there was none, or if it only limited an
@@ -65,7 +65,7 @@ impl<'a> ReportWriter<'a> {
             out,
             prompt,
             state: ReportState::Open,
-            course: Course::default(),
+            course: RunCourse::default(),
             over: None,
             last_verdict: None,
             limiting: Vec::new(),
@@ -79,7 +79,7 @@ impl<'a> ReportWriter<'a> {
     }
 
     /// Returns the course of the run up to the last turn.
-    pub(crate) fn course(&self) -> &Course {
+    pub(crate) fn course(&self) -> &RunCourse {
         &self.course
     }
 
@@ -111,7 +111,7 @@ impl<'a> ReportWriter<'a> {
     /// Reports that `plan` drives the robot from the turn at time `t` on, with the atom `atom`, after it has replaced
     /// another plan for this reason.
     pub(crate) fn begins(&mut self, plan: &dyn Texts, t: Nanos, atom: Option<u32>, reason: &str) {
-        self.course = Course { since: reason.to_owned(), ..Course::default() };
+        self.course = RunCourse { since: reason.to_owned(), ..RunCourse::default() };
         self.over = None;
         let Some(atom) = atom else { return };
         let (law, place) = (plan.law(atom), place(plan, &self.course.passes, atom));

@@ -18,12 +18,12 @@ const SIMILAR: f64 = 0.75;
 pub(crate) struct Required {
     /// Required causes as typed on the command line.
     texts: Vec<String>,
-    causes: Vec<Cause>,
+    causes: Vec<RequiredCause>,
 }
 
 /// A cause of a plan's end.
 #[derive(Debug, PartialEq, Eq)]
-enum Cause {
+enum RequiredCause {
     /// The law of the last atom completed.
     Completed,
     /// The interrupt of this bracket fired.
@@ -57,7 +57,8 @@ impl Required {
         let texts: Vec<String> = matches.get_many("require").into_iter().flatten().cloned().collect();
         let mut causes = Vec::new();
         for text in &texts {
-            let of_text: Vec<Cause> = endings(plan, text.trim(), |scope| ends_plan(plan.fsm(), scope)).collect();
+            let of_text: Vec<RequiredCause> =
+                endings(plan, text.trim(), |scope| ends_plan(plan.fsm(), scope)).collect();
             if of_text.is_empty() {
                 return Err(refused(plan, text));
             }
@@ -68,10 +69,10 @@ impl Required {
 
     /// Returns `true` if the end `over` of a plan has a required cause.
     pub(crate) fn allows(&self, over: &Over) -> bool {
-        let is_cause = |cause: &Cause| match cause {
-            Cause::Completed => over.by == COMPLETED,
-            Cause::Scope(scope) => over.by != COMPLETED && over.bracket == *scope,
-            Cause::Operand(scope, number) => {
+        let is_cause = |cause: &RequiredCause| match cause {
+            RequiredCause::Completed => over.by == COMPLETED,
+            RequiredCause::Scope(scope) => over.by != COMPLETED && over.bracket == *scope,
+            RequiredCause::Operand(scope, number) => {
                 over.by != COMPLETED && over.bracket == *scope && over.numbers.contains(number)
             }
         };
@@ -85,15 +86,16 @@ impl Required {
 }
 
 /// Returns the causes with the name or condition `text`, for the scopes that `may` accepts.
-fn endings(plan: &dyn Texts, text: &str, may: impl Fn(u32) -> bool) -> impl Iterator<Item = Cause> {
-    let completed = (text == COMPLETED).then_some(Cause::Completed);
+fn endings(plan: &dyn Texts, text: &str, may: impl Fn(u32) -> bool) -> impl Iterator<Item = RequiredCause> {
+    let completed = (text == COMPLETED).then_some(RequiredCause::Completed);
     let scopes = scopes(plan.fsm()).filter(|scope| may(*scope)).flat_map(|scope| {
-        let named = (!text.is_empty() && plan.name(scope) == text).then_some(Cause::Scope(scope));
+        let named = (!text.is_empty() && plan.name(scope) == text).then_some(RequiredCause::Scope(scope));
         let operands: Vec<_> = plan.source().operands_of(scope).collect();
         // A plan that was written in Rust has conditions but no operands.
-        let whole = (operands.is_empty() && is_condition(text, plan.condition(scope))).then_some(Cause::Scope(scope));
+        let whole =
+            (operands.is_empty() && is_condition(text, plan.condition(scope))).then_some(RequiredCause::Scope(scope));
         let parts = (0..).zip(operands).filter(|(_, operand)| is_operand(text, operand));
-        let parts: Vec<Cause> = parts.map(|(number, _)| Cause::Operand(scope, number)).collect();
+        let parts: Vec<RequiredCause> = parts.map(|(number, _)| RequiredCause::Operand(scope, number)).collect();
         named.into_iter().chain(whole).chain(parts)
     });
     completed.into_iter().chain(scopes).collect::<Vec<_>>().into_iter()

@@ -4,11 +4,11 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
-use mdle_record::{Begin, Change, RecordFile};
+use mdle_record::{Begin, RecordFile, RecordedChange};
 use mdle_runtime::{Nanos, Sensed, Turn, Twist};
 
 use crate::drive::Exact;
-use crate::log::Entry;
+use crate::log::LogEntry;
 use crate::position::Texts;
 use crate::record::{RecordWriter, UnmadeTurn};
 use crate::supervised::Supervised;
@@ -38,7 +38,7 @@ pub struct RobotTurn<'a> {
     /// Transitions of the turn.
     pub transitions: &'a Transitions,
     /// Changes that influenced the turn, besides its output.
-    pub changes: Vec<Change>,
+    pub changes: Vec<RecordedChange>,
 }
 
 impl RobotRecord {
@@ -62,7 +62,7 @@ impl RobotRecord {
         self.0.take(Some(Exact { y, asked: sent, sent }), changes);
         match plan {
             None => self.0.turn_without_plan(&UnmadeTurn { number, t, plan: plan_number, supervised }),
-            Some((plan, state)) => self.0.turn(&Entry {
+            Some((plan, state)) => self.0.turn(&LogEntry {
                 plan,
                 turn: number,
                 t,

@@ -7,7 +7,7 @@ use std::time::Duration;
 use mdle_runtime::PrintableLines;
 
 use crate::Refusal;
-use crate::signals::Signal;
+use crate::signals::ProcessSignal;
 
 /// Exit status after the plan has ended by any cause.
 pub(crate) const OVER: u8 = 0;
@@ -42,7 +42,7 @@ pub(crate) enum RunEnd {
     /// A rule of the supervisor, with this name, ended the plan.
     Safety(String),
     /// A signal requested the end.
-    Signal(Signal),
+    Signal(ProcessSignal),
     /// The first exchange failed, before any law was applied, with this message of the robot.
     Unstarted(String),
     /// An exchange failed, with this message of the robot.

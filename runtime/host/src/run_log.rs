@@ -4,11 +4,11 @@ use std::io;
 use std::path::Path;
 
 use mdle_quantity::Clocked;
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::Nanos;
 
 use crate::drive::Exact;
-use crate::log::{Entry, Log};
+use crate::log::{Log, LogEntry};
 use crate::record::{RecordWriter, UnmadeTurn};
 
 /// Ending of a record's file name.
@@ -57,7 +57,7 @@ impl RunLog {
     }
 
     /// Stores the output and the input of a turn, and the changes that influenced the turn besides the output.
-    pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<Change>) {
+    pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<RecordedChange>) {
         match &mut self.format {
             Format::Lines(_) => {}
             Format::Record(record) => record.take(exact, changes),
@@ -80,7 +80,7 @@ impl RunLog {
     ///
     /// # Errors
     /// Fails if the file cannot be written, and the run must not continue without the log.
-    pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
+    pub(crate) fn turn(&mut self, entry: &LogEntry<'_>) -> io::Result<()> {
         self.t = entry.t;
         self.write(|format| match format {
             Format::Lines(log) => log.turn(entry),

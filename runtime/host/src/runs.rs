@@ -14,11 +14,11 @@ use std::time::Duration;
 use mdle_runtime::{Nanos, PrintableLines};
 
 use crate::clock::Clock;
-use crate::cycle::Limits;
+use crate::cycle::RunLimits;
 use crate::drive::Drive;
 use crate::instants::Instants;
 use crate::outcome::{EndedRun, RunOutcome};
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::report::ReportWriter;
 use crate::required::Required;
 use crate::run_end::RunEnd;
@@ -33,7 +33,7 @@ use crate::{Batch, Judgement, Pace, Time};
 const TIMEOUT: Duration = Duration::from_secs(3600);
 
 /// Runs of a [`Batch`], without the type of its robots.
-pub(crate) struct Runs<'p> {
+pub(crate) struct BatchRuns<'p> {
     first: u64,
     runs: NonZeroU64,
     jobs: NonZeroUsize,
@@ -46,7 +46,7 @@ pub(crate) struct Runs<'p> {
 /// A robot with its plan before the first exchange, or the reason why the robot could not be created.
 pub(crate) type Prepared<'p> = Result<Box<dyn Drive + 'p>, String>;
 
-impl<'p> Runs<'p> {
+impl<'p> BatchRuns<'p> {
     /// Returns the runs of `batch`; `drive` gives each robot its pilot.
     pub(crate) fn of<R: 'p>(batch: Batch<R>, drive: impl Fn(R) -> Prepared<'p> + Send + Sync + 'p) -> Self {
         let Batch { first, runs, jobs, json, robot, alone } = batch;
@@ -55,9 +55,9 @@ impl<'p> Runs<'p> {
 }
 
 /// Settings that all runs share.
-pub(crate) struct Terms<'a> {
+pub(crate) struct CommonTerms<'a> {
     pub(crate) period: Duration,
-    pub(crate) limits: Limits,
+    pub(crate) limits: RunLimits,
     pub(crate) signals: &'a Signals,
     /// Watchdog that limits the time of each turn.
     pub(crate) watch: &'a TurnWatch,
@@ -67,7 +67,7 @@ pub(crate) struct Terms<'a> {
     pub(crate) required: &'a Required,
 }
 
-impl Terms<'_> {
+impl CommonTerms<'_> {
     /// Returns the default time limit if no option limits the runs.
     fn by_default(&self) -> Option<Duration> {
         (self.limits.timeout.is_none() && self.limits.turns.is_none()).then_some(TIMEOUT)
@@ -76,10 +76,10 @@ impl Terms<'_> {
 
 /// Makes the runs and reports them; returns the exit status, and the error if `out` could not be written.
 pub(crate) fn run(
-    batch: &Runs<'_>,
-    terms: &Terms<'_>,
+    batch: &BatchRuns<'_>,
+    terms: &CommonTerms<'_>,
     out: &mut dyn Write,
-    mut progress: Option<Progress<'_>>,
+    mut progress: Option<ProgressLine<'_>>,
 ) -> (u8, Option<std::io::Error>) {
     let mut runs = Vec::new();
     let next = AtomicU64::new(0);
@@ -118,7 +118,7 @@ pub(crate) fn run(
 }
 
 /// Makes runs until all runs are made or a signal arrives.
-fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<EndedRun>) {
+fn work(batch: &BatchRuns<'_>, terms: &CommonTerms<'_>, next: &AtomicU64, done: Sender<EndedRun>) {
     loop {
         let number = next.fetch_add(1, Ordering::Relaxed);
         if number >= batch.runs.get() || terms.signals.caught().is_some() {
@@ -132,7 +132,7 @@ fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<Ende
 }
 
 /// Makes the run with this seed; returns `None` if a signal interrupted it.
-fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
+fn one(batch: &BatchRuns<'_>, seed: u64, terms: &CommonTerms<'_>) -> Option<EndedRun> {
     let mut run = EndedRun { seed, outcome: RunOutcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut drive = match shielded(|| (batch.drive)(seed)).unwrap_or_else(panicked) {
         Ok(drive) => drive,
@@ -141,7 +141,7 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
     let mut clock = Clock::begin(StoppedClock, Time::Stepped(Pace::Max), terms.period, None);
     let mut nobody = std::io::sink();
     let mut over = None;
-    let limits = Limits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
+    let limits = RunLimits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
     let watched = terms.watch.run(Time::Stepped(Pace::Max));
     let ending = shielded(|| {
         let mut report = ReportWriter::new(&mut nobody, false);

@@ -12,11 +12,11 @@ use crate::executable::Executable;
 use crate::instants::Instants;
 use crate::one_run::one_run;
 use crate::paths;
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::ready::bug_before;
 use crate::required::{Required, scopes};
 use crate::run_end::{RunEnd, say};
-use crate::runs::{self, Runs, Terms};
+use crate::runs::{self, BatchRuns, CommonTerms};
 use crate::safety::shielded;
 use crate::surroundings::{PlanData, RunSettings, Surroundings};
 use crate::target_options::TargetOptions;
@@ -82,7 +82,7 @@ fn batch<'p>(
     matches: &ArgMatches,
     options: &SharedOptions,
     store: PathStore,
-) -> Result<Option<Runs<'p>>, Refusal> {
+) -> Result<Option<BatchRuns<'p>>, Refusal> {
     let batch = shielded(|| executable.batch(matches, options.period, store)).unwrap_or_else(bug_before)?;
     let alone =
         [("--log", &options.log), ("--record-path", &options.path)].into_iter().find(|(_, file)| file.is_some());
@@ -96,7 +96,7 @@ fn batch<'p>(
 
 /// Makes the runs of a batch and reports them; returns the exit status.
 fn several<'o, I, O>(
-    batch: &Runs<'_>,
+    batch: &BatchRuns<'_>,
     settings: &RunSettings<'_>,
     required: &Required,
     surroundings: Surroundings<'_, I, O>,
@@ -108,7 +108,7 @@ where
     // No real robot has to be stopped.
     signals.robot_runs(Time::Stepped(Pace::Max));
     signals.patience().stop_was_tried(None);
-    let terms = Terms {
+    let terms = CommonTerms {
         period: settings.options.period,
         limits: settings.limits(),
         signals: &signals,
@@ -116,7 +116,7 @@ where
         program: &settings.call.command(settings.program.plan),
         required,
     };
-    let progress = elapsed.map(|now| Progress::new(&mut *err, now));
+    let progress = elapsed.map(|now| ProgressLine::new(&mut *err, now));
     let (status, unwritten) = runs::run(batch, &terms, &mut *out(), progress);
     if let Some(signal) = signals.caught() {
         RunEnd::Signal(signal).tell(true, err);

@@ -15,7 +15,7 @@ use crate::stop_request::StopRequest;
 
 /// A signal that requests the end of the program, by its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Signal(u8);
+pub(crate) struct ProcessSignal(u8);
 
 /// Signals that end a program by default and can be caught. Signals with another meaning here are left out: SIGUSR1
 /// requests the timing, and SIGPIPE and SIGXFSZ are errors of the file that is written.
@@ -41,7 +41,7 @@ const NAMED: [(Number, &str); 16] = [
 /// itself.
 const REAL_TIME: (u8, u8) = (34, 64);
 
-impl Signal {
+impl ProcessSignal {
     /// The signal SIGINT, which Ctrl-C sends.
     #[cfg(test)]
     pub(crate) const INTERRUPT: Self = Self::of(Number::INT);
@@ -98,7 +98,7 @@ pub(crate) struct Signals {
     /// `true` if SIGUSR1 has arrived, which requests the timing of turns.
     timing: Arc<AtomicBool>,
     /// Signals that are recorded: all signals but those that were ignored at the start.
-    noted: Vec<Signal>,
+    noted: Vec<ProcessSignal>,
     patience: Patience,
 }
 
@@ -114,7 +114,7 @@ impl Signals {
         // Has the effect of ignoring the signal: the write that exceeds the size limit fails instead.
         flag::register(Number::XFSZ.as_raw(), Arc::default())?;
         let ignored = ignored();
-        for signal in Signal::all() {
+        for signal in ProcessSignal::all() {
             if signal.may_be_ignored() && ignored & (1 << (signal.number() - 1)) != 0 {
                 continue;
             }
@@ -130,9 +130,9 @@ impl Signals {
     }
 
     /// Installs a handler that records a signal, or ends the program while signals end it at once.
-    fn note(&self, signal: Signal) -> io::Result<()> {
+    fn note(&self, signal: ProcessSignal) -> io::Result<()> {
         let number = i32::from(signal.number());
-        if signal == Signal::of(Number::BUS) {
+        if signal == ProcessSignal::of(Number::BUS) {
             // A real bus error recurs at once, so a second SIGBUS ends the program; a single one, sent from outside, is
             // recorded.
             let noted = Arc::new(AtomicBool::new(false));
@@ -157,7 +157,7 @@ impl Signals {
     }
 
     /// Returns the signals that are recorded.
-    pub(crate) fn noted(&self) -> &[Signal] {
+    pub(crate) fn noted(&self) -> &[ProcessSignal] {
         &self.noted
     }
 
@@ -172,8 +172,8 @@ impl Signals {
     }
 
     /// Returns the last signal that has arrived, if any.
-    pub(crate) fn caught(&self) -> Option<Signal> {
-        u8::try_from(self.caught.load(Ordering::SeqCst)).ok().filter(|number| *number > 0).map(Signal)
+    pub(crate) fn caught(&self) -> Option<ProcessSignal> {
+        u8::try_from(self.caught.load(Ordering::SeqCst)).ok().filter(|number| *number > 0).map(ProcessSignal)
     }
 
     /// Returns the request by which code that opens a robot is informed about a signal.
@@ -207,7 +207,7 @@ impl Signals {
 
     /// Records this signal as if it had arrived.
     #[cfg(test)]
-    pub(crate) fn raise(&self, signal: Signal) {
+    pub(crate) fn raise(&self, signal: ProcessSignal) {
         self.caught.store(usize::from(signal.number()), Ordering::SeqCst);
     }
 }
@@ -226,8 +226,8 @@ mod tests {
 
     #[test]
     fn each_signal_has_a_name_of_its_own() {
-        let names: std::collections::BTreeSet<_> = Signal::all().map(Signal::name).collect();
+        let names: std::collections::BTreeSet<_> = ProcessSignal::all().map(ProcessSignal::name).collect();
         assert_eq!(names.len(), 16 + 31);
-        assert_eq!((Signal(1).name(), Signal(34).name()), ("SIGHUP".into(), "SIGRTMIN+0".into()));
+        assert_eq!((ProcessSignal(1).name(), ProcessSignal(34).name()), ("SIGHUP".into(), "SIGRTMIN+0".into()));
     }
 }

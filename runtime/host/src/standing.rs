@@ -6,11 +6,11 @@ use mdle_runtime::fsm::Kind;
 use crate::cause::place;
 use crate::passes::Passes;
 use crate::position::Position;
-use crate::{Around, PlanPosition};
+use crate::{EnclosingScope, PlanPosition};
 
 /// Data about the course of a run up to its last turn that the plan itself does not record.
 #[derive(Debug, Default)]
-pub(crate) struct Course {
+pub(crate) struct RunCourse {
     /// Passes of the loops.
     pub(crate) passes: Passes,
     /// Cause of the last transition, with which the current atom began; empty for the plan's first atom.
@@ -18,7 +18,12 @@ pub(crate) struct Course {
 }
 
 /// Returns the position in a plan that has not ended, and that began at time `zero`.
-pub(crate) fn standing<'m>(position: &'m dyn Position, t: Nanos, zero: Nanos, course: &'m Course) -> PlanPosition<'m> {
+pub(crate) fn standing<'m>(
+    position: &'m dyn Position,
+    t: Nanos,
+    zero: Nanos,
+    course: &'m RunCourse,
+) -> PlanPosition<'m> {
     let (plan, fsm) = (position.texts(), position.texts().fsm());
     let atom = position.atom().and_then(|atom| fsm.atoms.get(atom as usize));
     let own = atom.and_then(|atom| fsm.brackets.get(atom.scope as usize)).map(|bracket| bracket.kind);
@@ -28,7 +33,11 @@ pub(crate) fn standing<'m>(position: &'m dyn Position, t: Nanos, zero: Nanos, co
     };
     let scopes = levels.map(|level| {
         let scope = position.scope(level);
-        Around { name: plan.name(scope), condition: plan.condition(scope), since: position.since(level, t.since(zero)) }
+        EnclosingScope {
+            name: plan.name(scope),
+            condition: plan.condition(scope),
+            since: position.since(level, t.since(zero)),
+        }
     });
     let law = position.atom().map_or("", |atom| plan.law(atom));
     let place = position.atom().map_or_else(String::new, |atom| place(plan, &course.passes, atom));

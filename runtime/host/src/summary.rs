@@ -101,12 +101,12 @@ impl Summary<'_> {
     }
 
     /// Returns groups of similar runs in the order of their first seeds. Runs that reached their goal are left out.
-    fn groups(&self) -> Vec<Group<'_>> {
-        let mut groups: Vec<Group<'_>> = Vec::new();
+    fn groups(&self) -> Vec<OutcomeGroup<'_>> {
+        let mut groups: Vec<OutcomeGroup<'_>> = Vec::new();
         for run in self.runs.iter().filter(|run| run.outcome != RunOutcome::Arrived) {
             match groups.iter_mut().find(|group| group.holds(run)) {
                 Some(group) => group.count += 1,
-                None => groups.push(Group { first: run, count: 1 }),
+                None => groups.push(OutcomeGroup { first: run, count: 1 }),
             }
         }
         groups
@@ -176,12 +176,12 @@ impl fmt::Display for Summary<'_> {
 }
 
 /// Runs with the same outcome and the same cause.
-struct Group<'a> {
+struct OutcomeGroup<'a> {
     first: &'a EndedRun,
     count: u64,
 }
 
-impl Group<'_> {
+impl OutcomeGroup<'_> {
     /// Returns `true` if a run belongs to the group. Measured values and places, which differ from run to run, do not
     /// count.
     fn holds(&self, run: &EndedRun) -> bool {
@@ -193,7 +193,7 @@ impl Group<'_> {
     }
 }
 
-impl fmt::Display for Group<'_> {
+impl fmt::Display for OutcomeGroup<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let EndedRun { seed, outcome, t, over, .. } = self.first;
         write!(f, "{} {}", self.count, outcome.name())?;

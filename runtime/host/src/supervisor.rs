@@ -4,10 +4,10 @@
 use std::fmt;
 use std::os::fd::BorrowedFd;
 
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::{Nanos, Plan};
 
-use crate::standing::{Course, standing};
+use crate::standing::{RunCourse, standing};
 use crate::timing::Timing;
 use crate::{Lateness, Pace, Pilot, PlanPosition, RobotSettings, RunTerms};
 
@@ -32,8 +32,8 @@ pub trait Supervisor<B: Pilot> {
 
     /// Acts before the first turn and after each turn, before the input of the turn has been sent. A call that takes
     /// long delays a real robot; in stepped time it may take any time.
-    fn at_break(&mut self, _moment: &mut Break<'_, B>) -> Orders {
-        Orders::default()
+    fn at_break(&mut self, _moment: &mut Break<'_, B>) -> BreakOrders {
+        BreakOrders::default()
     }
 
     /// Receives the last state of a run that ends before its plan; called before the robot is stopped. After a panic it
@@ -49,12 +49,12 @@ pub trait Supervisor<B: Pilot> {
     fn record(&mut self) {}
 
     /// Removes and returns the changes of the supervisor's rules before the last turn.
-    fn take_changes(&mut self) -> Vec<Change> {
+    fn take_changes(&mut self) -> Vec<RecordedChange> {
         Vec::new()
     }
 
     /// Repeats a change of the supervisor's rules in a replay of a run.
-    fn repeat(&mut self, _change: &Change) {}
+    fn repeat(&mut self, _change: &RecordedChange) {}
 
     /// Returns the requests that were fulfilled at breaks since the last call, for the log.
     fn take_requests(&mut self) -> Vec<String> {
@@ -162,7 +162,7 @@ pub struct Break<'b, B: Pilot> {
     pub pilot: &'b mut B,
     /// Settings of the robot, if it has any.
     pub settings: Option<&'b mut dyn RobotSettings>,
-    pub(crate) course: &'b Course,
+    pub(crate) course: &'b RunCourse,
     /// Lateness and duration of the turns; `None` in stepped time, and before the second turn.
     pub(crate) timing: Option<&'b Timing>,
 }
@@ -190,7 +190,7 @@ impl<B: Pilot> fmt::Debug for Break<'_, B> {
 
 /// Changes to a run that a supervisor requests at a break.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Orders {
+pub struct BreakOrders {
     /// Pace of stepped time from now on; ignored for the wall clock.
     pub pace: Option<Pace>,
     /// `true` if the run has to end: the robot is stopped, and the exit status is 0.

@@ -9,7 +9,7 @@ use mdle_runtime::PathStore;
 use crate::Program;
 use crate::arguments::SharedOptions;
 use crate::call::Call;
-use crate::cycle::Limits;
+use crate::cycle::RunLimits;
 use crate::required::Required;
 use crate::signals::Signals;
 use crate::turn_watch::TurnWatch;
@@ -44,8 +44,8 @@ pub(crate) struct RunSettings<'a> {
 
 impl RunSettings<'_> {
     /// Returns the limits of the run.
-    pub(crate) fn limits(&self) -> Limits {
-        Limits { timeout: self.options.timeout, turns: self.options.turns }
+    pub(crate) fn limits(&self) -> RunLimits {
+        RunLimits { timeout: self.options.timeout, turns: self.options.turns }
     }
 }
 

@@ -24,11 +24,11 @@ const LAST_LINES: Duration = Duration::from_millis(300);
 
 /// Runs of a program whose turns are watched by another thread.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct TurnWatch(Arc<Mutex<Vec<Entry>>>);
+pub(crate) struct TurnWatch(Arc<Mutex<Vec<ObservedRun>>>);
 
 /// A run, with the last observation of the watching thread.
 #[derive(Debug)]
-struct Entry {
+struct ObservedRun {
     run: Weak<WatchedRun>,
     last_turn: u64,
     looks: u32,
@@ -103,7 +103,7 @@ impl TurnWatch {
     /// Returns a run whose turns are watched until it is dropped.
     pub(crate) fn run(&self, time: Time) -> Arc<WatchedRun> {
         let run = Arc::new(WatchedRun { turn: AtomicU64::new(0), time, work: Work::default() });
-        self.entries().push(Entry { run: Arc::downgrade(&run), last_turn: 0, looks: 0 });
+        self.entries().push(ObservedRun { run: Arc::downgrade(&run), last_turn: 0, looks: 0 });
         run
     }
 
@@ -124,7 +124,7 @@ impl TurnWatch {
         hung
     }
 
-    fn entries(&self) -> MutexGuard<'_, Vec<Entry>> {
+    fn entries(&self) -> MutexGuard<'_, Vec<ObservedRun>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -133,8 +133,8 @@ impl WatchedRun {
     /// Makes a turn whose time is limited.
     pub(crate) fn make<T>(&self, number: u64, turn: impl FnOnce() -> T) -> T {
         /// Guard that records the end of a turn, also after a panic.
-        struct Turn<'r>(&'r WatchedRun);
-        impl Drop for Turn<'_> {
+        struct TurnGuard<'r>(&'r WatchedRun);
+        impl Drop for TurnGuard<'_> {
             fn drop(&mut self) {
                 self.0.turn.store(0, Ordering::Release);
                 at_work(None);
@@ -143,7 +143,7 @@ impl WatchedRun {
         }
         self.turn.store(number.saturating_add(1), Ordering::Release);
         WORK.set(Some(Arc::clone(&self.work)));
-        let _turn = Turn(self);
+        let _turn = TurnGuard(self);
         turn()
     }
 }

@@ -5,14 +5,14 @@ use std::io::{self, Write};
 use mdle_runtime::{Nanos, Turn};
 
 use crate::clock::Clock;
-use crate::cycle::{Limits, TurnEnd, Turns, cycle};
+use crate::cycle::{RunLimits, TurnEnd, Turns, cycle};
 use crate::drive::Drive;
 use crate::instants::Instants;
-use crate::log::Entry;
-use crate::paths::Recorder;
+use crate::log::LogEntry;
+use crate::paths::PathRecording;
 use crate::pilot::AfterPlan;
 use crate::position::Position;
-use crate::progress::Progress;
+use crate::progress::ProgressLine;
 use crate::record::UnmadeTurn;
 use crate::report::ReportWriter;
 use crate::run_end::{RunEnd, say};
@@ -24,7 +24,7 @@ use crate::timing::Timing;
 use crate::transitions::Transitions;
 use crate::turn_watch::WatchedRun;
 use crate::views::ByOdometry;
-use crate::{Ended, Observer, Orders, Pace, Verdict};
+use crate::{BreakOrders, Ended, Observer, Pace, Verdict};
 
 /// Recipients of the reports about turns.
 pub(crate) struct Witnesses<'a, 'o> {
@@ -33,11 +33,11 @@ pub(crate) struct Witnesses<'a, 'o> {
     /// Run log, if the options request it.
     pub(crate) log: Option<&'a mut RunLog>,
     /// Recorder of the driven path, if the options request it.
-    pub(crate) path: Option<&'a mut Recorder>,
+    pub(crate) path: Option<&'a mut PathRecording>,
     /// Views by odometry, if the options request them.
     pub(crate) views: Option<&'a mut ByOdometry>,
     /// Line that shows the progress of a fast run, if standard error is a terminal.
-    pub(crate) progress: Option<Progress<'a>>,
+    pub(crate) progress: Option<ProgressLine<'a>>,
     /// Standard error, if it does not show the progress line.
     pub(crate) err: Option<&'a mut dyn Write>,
 }
@@ -45,7 +45,7 @@ pub(crate) struct Witnesses<'a, 'o> {
 /// Makes the turns of a plan on its robot; see [`cycle`].
 pub(crate) fn run<I: Instants>(
     drive: &mut dyn Drive,
-    limits: Limits,
+    limits: RunLimits,
     clock: &mut Clock<I>,
     signals: &Signals,
     witnesses: &mut Witnesses<'_, '_>,
@@ -84,7 +84,7 @@ struct OnePlan<'t, 'a, 'o> {
 impl OnePlan<'_, '_, '_> {
     /// Calls the supervisor at the break after `turns` turns.
     fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, timing: Option<&Timing>) -> Result<(), RunEnd> {
-        let Orders { pace, end } = self.drive.at_break((turns, t, is_over), self.witnesses.report, timing);
+        let BreakOrders { pace, end } = self.drive.at_break((turns, t, is_over), self.witnesses.report, timing);
         self.pace = pace.or(self.pace);
         if end && !is_over { Err(RunEnd::Quit) } else { Ok(()) }
     }
@@ -257,7 +257,7 @@ impl Witnesses<'_, '_> {
         let frame = position.frame().filter(|_| applied.is_some());
         let state = position.state();
         let kind = turn;
-        log.turn(&Entry { plan, turn: number, t, state, kind, applied, frame, transitions, plan_number, supervised })
+        log.turn(&LogEntry { plan, turn: number, t, state, kind, applied, frame, transitions, plan_number, supervised })
     }
 }
 

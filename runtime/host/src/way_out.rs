@@ -77,7 +77,7 @@ pub(crate) fn judge(
 }
 
 /// Files that a run writes at its end.
-pub(crate) struct Files {
+pub(crate) struct EndFiles {
     pub(crate) log: Option<RunLog>,
     /// Error that prevented the path from being written.
     pub(crate) path: Option<io::Error>,
@@ -92,7 +92,7 @@ pub(crate) fn tell(
     orderly: bool,
     mut faults: Vec<RunFault>,
     report: &mut ReportWriter<'_>,
-    files: Files,
+    files: EndFiles,
     err: &mut dyn Write,
 ) -> u8 {
     let is_stopped = !faults.iter().any(|fault| matches!(fault, RunFault::Stop(_)));

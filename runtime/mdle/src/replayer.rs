@@ -13,7 +13,8 @@ use mdle_host::{
 };
 use mdle_host::{PilotFault, Transitions, Verdict};
 use mdle_record::{
-    Applied, Begin, Change, Message, MessageKind, ReadError, RecordedTransition, RecordedTurn, TurnsWithMessages,
+    Applied, Begin, Message, MessageKind, ReadError, RecordedChange, RecordedTransition, RecordedTurn,
+    TurnsWithMessages,
 };
 use mdle_runtime::{Alphabet, Nanos, Plan, Sensed, Turn, Twist};
 
@@ -175,30 +176,30 @@ impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> RecordedRun for ReplayOf
 
 impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> ReplayOf<A> {
     /// Applies a recorded change before a turn.
-    fn repeat(&mut self, change: Change) -> Result<(), Failure> {
+    fn repeat(&mut self, change: RecordedChange) -> Result<(), Failure> {
         match change {
-            Change::Files(files) => self.files.push(files),
-            Change::Armed { files, plan, when } => {
+            RecordedChange::Files(files) => self.files.push(files),
+            RecordedChange::Armed { files, plan, when } => {
                 let plan = self.plan(files, &plan)?;
                 let when = When::of_number(when).unwrap_or(When::Now);
                 self.helm.pilot_mut().plans_mut().replace(plan, when);
             }
-            Change::Limit { .. } | Change::SafetyReset => {
+            RecordedChange::Limit { .. } | RecordedChange::SafetyReset => {
                 if let Some(supervisor) = self.helm.supervisor_mut() {
                     supervisor.repeat(&change);
                 }
             }
-            Change::Path { name, setpoints } => self.paths.replace(name, setpoints),
-            Change::Attribute { .. }
-            | Change::Vanished(_)
-            | Change::Published { .. }
-            | Change::Cancelled
-            | Change::RolledBack(_)
-            | Change::Trial(_)
-            | Change::Skipped
-            | Change::Late
-            | Change::Back
-            | Change::Peer { .. } => self.helm.pilot_mut().repeat(&change),
+            RecordedChange::Path { name, setpoints } => self.paths.replace(name, setpoints),
+            RecordedChange::Attribute { .. }
+            | RecordedChange::Vanished(_)
+            | RecordedChange::Published { .. }
+            | RecordedChange::Cancelled
+            | RecordedChange::RolledBack(_)
+            | RecordedChange::Trial(_)
+            | RecordedChange::Skipped
+            | RecordedChange::Late
+            | RecordedChange::Back
+            | RecordedChange::Peer { .. } => self.helm.pilot_mut().repeat(&change),
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, PathStore, Radians, Sensed, Setpoint, Shape, StoredPath};
 
-use crate::bytes::{Bytes, put_f64, put_text, put_u32, put_u64};
+use crate::bytes::{ByteReader, put_f64, put_text, put_u32, put_u64};
 
 /// Data of a run that do not change.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -77,7 +77,7 @@ impl Begin {
 
     /// Reads the beginning of a run. Its paths stay in memory until the program ends, like the paths that a plan
     /// replays.
-    pub(crate) fn take(from: &mut Bytes<'_>) -> Option<(Self, Constants)> {
+    pub(crate) fn take(from: &mut ByteReader<'_>) -> Option<(Self, Constants)> {
         let [version, target, plan, command, beside] =
             [from.text()?, from.text()?, from.text()?, from.text()?, from.text()?];
         let period = from.nanos()?;
@@ -112,7 +112,7 @@ pub(crate) fn put_files(files: &[(String, String)], to: &mut Vec<u8>) {
 }
 
 /// Reads the names and texts of files.
-pub(crate) fn take_files(from: &mut Bytes<'_>) -> Option<Vec<(String, String)>> {
+pub(crate) fn take_files(from: &mut ByteReader<'_>) -> Option<Vec<(String, String)>> {
     from.list(|from| Some((from.text()?, from.text()?)))
 }
 
@@ -128,8 +128,8 @@ pub(crate) fn put_path(name: &str, setpoints: &[Setpoint], to: &mut Vec<u8>) {
 }
 
 /// Reads the name and the setpoints of a path.
-pub(crate) fn take_path(from: &mut Bytes<'_>) -> Option<(String, Vec<Setpoint>)> {
-    let setpoint = |from: &mut Bytes<'_>| {
+pub(crate) fn take_path(from: &mut ByteReader<'_>) -> Option<(String, Vec<Setpoint>)> {
+    let setpoint = |from: &mut ByteReader<'_>| {
         Some(Setpoint { at: from.nanos()?, heading: Radians(from.f64()?), speed: MetersPerSecond(from.f64()?) })
     };
     Some((from.text()?, from.list(setpoint)?))
@@ -149,7 +149,7 @@ fn put_shape(shape: &Shape, to: &mut Vec<u8>) {
     }
 }
 
-fn take_shape(from: &mut Bytes<'_>) -> Option<Shape> {
+fn take_shape(from: &mut ByteReader<'_>) -> Option<Shape> {
     let mut lengths = [Meters(0.0); 5];
     for length in &mut lengths {
         *length = Meters(from.f64()?);

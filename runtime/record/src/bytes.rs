@@ -35,9 +35,9 @@ pub(crate) fn put_text(to: &mut Vec<u8>, text: &str) {
 
 /// Bytes to read: each function reads a value from their start, or returns `None` if there are too few bytes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bytes<'b>(pub(crate) &'b [u8]);
+pub(crate) struct ByteReader<'b>(pub(crate) &'b [u8]);
 
-impl<'b> Bytes<'b> {
+impl<'b> ByteReader<'b> {
     pub(crate) fn take(&mut self, count: usize) -> Option<&'b [u8]> {
         let (taken, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;

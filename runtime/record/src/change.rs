@@ -5,12 +5,12 @@
 use mdle_runtime::{Nanos, PeerState, Setpoint, Twist};
 
 use crate::begin::{count, put_files, put_path, take_files, take_path};
-use crate::bytes::{Bytes, put_f64, put_pose, put_text, put_u32, put_u64};
+use crate::bytes::{ByteReader, put_f64, put_pose, put_text, put_u32, put_u64};
 use crate::exact::{put_twist, take_twist};
 
 /// A change that influences a turn, besides the robot's output.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Change {
+pub enum RecordedChange {
     /// A module has an attribute from now on. Later changes refer to attributes by number, counted from 0 in a record.
     Attribute {
         /// Name of the module.
@@ -92,72 +92,72 @@ pub struct Overruled {
 }
 
 /// Writes the changes before a turn.
-pub(crate) fn put_changes(changes: &[Change], to: &mut Vec<u8>) {
+pub(crate) fn put_changes(changes: &[RecordedChange], to: &mut Vec<u8>) {
     put_u32(to, count(changes));
     changes.iter().for_each(|change| put(change, to));
 }
 
 /// Reads the changes before a turn.
-pub(crate) fn take_changes(from: &mut Bytes<'_>) -> Option<Vec<Change>> {
+pub(crate) fn take_changes(from: &mut ByteReader<'_>) -> Option<Vec<RecordedChange>> {
     from.list(take)
 }
 
-fn put(change: &Change, to: &mut Vec<u8>) {
+fn put(change: &RecordedChange, to: &mut Vec<u8>) {
     match change {
-        Change::Attribute { module, name, kind } => {
+        RecordedChange::Attribute { module, name, kind } => {
             to.push(0);
             put_text(to, module);
             put_text(to, name);
             to.push(*kind);
         }
-        Change::Vanished(attribute) => {
+        RecordedChange::Vanished(attribute) => {
             to.push(1);
             put_u32(to, *attribute);
         }
-        Change::Published { attribute, at, bits } => {
+        RecordedChange::Published { attribute, at, bits } => {
             to.push(2);
             put_u32(to, *attribute);
             put_u64(to, at.0);
             put_u64(to, *bits);
         }
-        Change::Files(files) => {
+        RecordedChange::Files(files) => {
             to.push(3);
             put_files(files, to);
         }
-        Change::Armed { files, plan, when } => {
+        RecordedChange::Armed { files, plan, when } => {
             to.push(4);
             put_u32(to, *files);
             put_text(to, plan);
             to.push(*when);
         }
-        Change::Cancelled => to.push(5),
-        Change::RolledBack(why) => {
+        RecordedChange::Cancelled => to.push(5),
+        RecordedChange::RolledBack(why) => {
             to.push(6);
             put_text(to, why);
         }
-        Change::Trial(time) => {
+        RecordedChange::Trial(time) => {
             to.push(7);
             put_u64(to, time.0);
         }
-        Change::Limit { key, value } => {
+        RecordedChange::Limit { key, value } => {
             to.push(8);
             put_text(to, key);
             put_f64(to, *value);
         }
-        Change::Skipped => to.push(9),
-        Change::Late => to.push(10),
-        Change::Back => to.push(11),
-        Change::Peer { name, rounds, state } => {
+        RecordedChange::Skipped => to.push(9),
+        RecordedChange::Late => to.push(10),
+        RecordedChange::Back => to.push(11),
+        RecordedChange::Peer { name, rounds, state } => {
             to.push(12);
             put_text(to, name);
             put_u64(to, *rounds);
             put_peer_state(state.as_ref(), to);
         }
-        Change::Path { name, setpoints } => {
+        RecordedChange::Path { name, setpoints } => {
             to.push(13);
             put_path(name, setpoints, to);
         }
-        Change::SafetyReset => to.push(14),
+        RecordedChange::SafetyReset => to.push(14),
     }
 }
 
@@ -172,7 +172,7 @@ fn put_peer_state(state: Option<&PeerState>, to: &mut Vec<u8>) {
     }
 }
 
-fn take_peer_state(from: &mut Bytes<'_>) -> Option<Option<PeerState>> {
+fn take_peer_state(from: &mut ByteReader<'_>) -> Option<Option<PeerState>> {
     match from.u8()? {
         0 => Some(None),
         1 => {
@@ -183,26 +183,26 @@ fn take_peer_state(from: &mut Bytes<'_>) -> Option<Option<PeerState>> {
     }
 }
 
-fn take(from: &mut Bytes<'_>) -> Option<Change> {
+fn take(from: &mut ByteReader<'_>) -> Option<RecordedChange> {
     Some(match from.u8()? {
-        0 => Change::Attribute { module: from.text()?, name: from.text()?, kind: from.u8()? },
-        1 => Change::Vanished(from.u32()?),
-        2 => Change::Published { attribute: from.u32()?, at: from.nanos()?, bits: from.u64()? },
-        3 => Change::Files(take_files(from)?),
-        4 => Change::Armed { files: from.u32()?, plan: from.text()?, when: from.u8()? },
-        5 => Change::Cancelled,
-        6 => Change::RolledBack(from.text()?),
-        7 => Change::Trial(from.nanos()?),
-        8 => Change::Limit { key: from.text()?, value: from.f64()? },
-        9 => Change::Skipped,
-        10 => Change::Late,
-        11 => Change::Back,
-        12 => Change::Peer { name: from.text()?, rounds: from.u64()?, state: take_peer_state(from)? },
+        0 => RecordedChange::Attribute { module: from.text()?, name: from.text()?, kind: from.u8()? },
+        1 => RecordedChange::Vanished(from.u32()?),
+        2 => RecordedChange::Published { attribute: from.u32()?, at: from.nanos()?, bits: from.u64()? },
+        3 => RecordedChange::Files(take_files(from)?),
+        4 => RecordedChange::Armed { files: from.u32()?, plan: from.text()?, when: from.u8()? },
+        5 => RecordedChange::Cancelled,
+        6 => RecordedChange::RolledBack(from.text()?),
+        7 => RecordedChange::Trial(from.nanos()?),
+        8 => RecordedChange::Limit { key: from.text()?, value: from.f64()? },
+        9 => RecordedChange::Skipped,
+        10 => RecordedChange::Late,
+        11 => RecordedChange::Back,
+        12 => RecordedChange::Peer { name: from.text()?, rounds: from.u64()?, state: take_peer_state(from)? },
         13 => {
             let (name, setpoints) = take_path(from)?;
-            Change::Path { name, setpoints }
+            RecordedChange::Path { name, setpoints }
         }
-        14 => Change::SafetyReset,
+        14 => RecordedChange::SafetyReset,
         _ => return None,
     })
 }
@@ -217,7 +217,7 @@ pub(crate) fn put_overruled(overruled: Option<&Overruled>, to: &mut Vec<u8>) {
 }
 
 /// Reads the input that a safety rule changed; returns `Some(None)` if no rule changed it.
-pub(crate) fn take_overruled(from: &mut Bytes<'_>) -> Option<Option<Overruled>> {
+pub(crate) fn take_overruled(from: &mut ByteReader<'_>) -> Option<Option<Overruled>> {
     match from.u8()? {
         0 => Some(None),
         1 => Some(Some(Overruled { asked: take_twist(from)?, rule: from.text()? })),

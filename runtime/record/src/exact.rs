@@ -6,7 +6,7 @@ use mdle_runtime::{
 };
 
 use crate::Constants;
-use crate::bytes::{Bytes, put_f32, put_f64, put_pose, put_u32, put_u64};
+use crate::bytes::{ByteReader, put_f32, put_f64, put_pose, put_u32, put_u64};
 
 /// Tag of a compass that can be computed from the output and the previous compass.
 const COMPUTED: u8 = 0;
@@ -52,7 +52,7 @@ pub(crate) fn put_twist(twist: Twist, to: &mut Vec<u8>) {
     put_f64(to, twist.omega.0);
 }
 
-pub(crate) fn take_twist(from: &mut Bytes<'_>) -> Option<Twist> {
+pub(crate) fn take_twist(from: &mut ByteReader<'_>) -> Option<Twist> {
     Some(Twist { v: MetersPerSecond(from.f64()?), omega: RadiansPerSecond(from.f64()?) })
 }
 
@@ -103,7 +103,7 @@ fn put_ping(ping: &Ping, y: &Sensed, mount: Mount, to: &mut Vec<u8>) {
 
 /// Reads an output that was written with the previous output `before`. Returns `None` if the bytes are not an output,
 /// or if the recorded drift of the heading does not follow from the pings.
-pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<Sensed> {
+pub(crate) fn take(from: &mut ByteReader<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<Sensed> {
     let mut y = Sensed {
         at: from.nanos()?,
         data_age: Nanos::ZERO,

@@ -3,7 +3,7 @@
 
 use mdle_runtime::{Nanos, Sensed};
 
-use crate::bytes::{Bytes, put_u32, put_u64};
+use crate::bytes::{ByteReader, put_u32, put_u64};
 use crate::turn::{self, TurnMade, Undecoded};
 use crate::{Begin, Chain, RecordedTransition, RecordedTurn};
 
@@ -99,7 +99,7 @@ impl Frames {
 /// Returns the tag and the content of the first frame in `bytes`, and the length of the whole frame; `None` if the
 /// frame is incomplete or invalid.
 pub(crate) fn first(bytes: &[u8]) -> Option<(Tag, &[u8], usize)> {
-    let mut from = Bytes(bytes);
+    let mut from = ByteReader(bytes);
     let tag = Tag::of(from.u8()?)?;
     let length = from.u32()? as usize;
     Some((tag, from.take(length)?, HEAD + length))
@@ -107,26 +107,26 @@ pub(crate) fn first(bytes: &[u8]) -> Option<(Tag, &[u8], usize)> {
 
 /// Decoder of the turns of a record.
 #[derive(Debug)]
-pub(crate) struct Turns {
+pub(crate) struct TurnDecoder {
     pub(crate) begin: Begin,
     constants: crate::Constants,
     before: Option<Sensed>,
     chain: Chain,
 }
 
-impl Turns {
+impl TurnDecoder {
     /// Reads the content of the first frame of a record.
     pub(crate) fn of(content: &[u8]) -> Result<Self, Undecoded> {
         let mut chain = Chain::default();
         let content = chain.checked(content)?;
-        let (begin, constants) = Begin::take(&mut Bytes(content)).ok_or(Undecoded::Unreadable)?;
+        let (begin, constants) = Begin::take(&mut ByteReader(content)).ok_or(Undecoded::Unreadable)?;
         Ok(Self { begin, constants, before: None, chain })
     }
 
     /// Reads the content of the next frame of a turn.
     pub(crate) fn next(&mut self, content: &[u8]) -> Result<RecordedTurn, Undecoded> {
         let content = self.chain.checked(content)?;
-        let turn = turn::take(&mut Bytes(content), self.before.as_ref(), &self.constants);
+        let turn = turn::take(&mut ByteReader(content), self.before.as_ref(), &self.constants);
         let turn = turn.ok_or(Undecoded::Unreadable)?;
         self.before = Some(turn.y);
         Ok(turn)

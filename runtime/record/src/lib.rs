@@ -19,7 +19,7 @@ mod viewers;
 mod writer;
 
 pub use begin::{Begin, Constants, SafetyTexts};
-pub use change::{Change, Overruled};
+pub use change::{Overruled, RecordedChange};
 pub use reader::{Message, MessageKind, ReadError, Records, TurnsWithMessages};
 pub use turn::{Applied, Chain, RecordedTransition, RecordedTurn, TurnMade};
 pub use writer::RecordFile;

@@ -34,7 +34,7 @@ pub(crate) enum Unreadable {
 const MOST_ZEROS: u32 = 120_000;
 
 /// Reader of the parts of an MCAP file.
-pub(crate) struct Parts<R> {
+pub(crate) struct PartReader<R> {
     source: R,
     reader: LinearReader,
     chunk: Option<Chunk>,
@@ -56,7 +56,7 @@ struct Chunk {
     is_sound: bool,
 }
 
-impl<R: Read> Parts<R> {
+impl<R: Read> PartReader<R> {
     pub(crate) fn new(source: R) -> Self {
         let options = LinearReaderOptions::default()
             .with_record_length_limit(LARGEST)

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::io::{self, Read};
 
-use crate::frames::Turns;
-use crate::parts::{FilePart, Parts, Unreadable};
+use crate::frames::TurnDecoder;
+use crate::parts::{FilePart, PartReader, Unreadable};
 use crate::turn::Undecoded;
 use crate::writer::{BEGIN, TURN};
 use crate::{Begin, RecordedTurn};
@@ -101,12 +101,12 @@ impl<R: Read> Iterator for TurnsWithMessages<R> {
 
 /// Turns of a record.
 pub struct Records<R> {
-    parts: Parts<R>,
+    parts: PartReader<R>,
     /// Channels of `/exact/begin`, `/exact/turn`, `/plan/transitions` and `/engine/events`.
     channels: [Option<u16>; 4],
     /// Messages that were read since the last turn.
     messages: Vec<Message>,
-    turns: Option<Turns>,
+    turns: Option<TurnDecoder>,
     count: u64,
 }
 
@@ -116,11 +116,11 @@ impl<R: Read> Records<R> {
     /// # Errors
     /// Fails if the source cannot be read, or is not a record.
     pub fn open(source: R) -> Result<(Begin, Self), ReadError> {
-        let (parts, messages) = (Parts::new(source), Vec::new());
+        let (parts, messages) = (PartReader::new(source), Vec::new());
         let mut records = Self { parts, channels: [None; 4], messages, turns: None, count: 0 };
         match records.message() {
             Ok(Some((0, content))) => {
-                let turns = Turns::of(&content).map_err(|why| match why {
+                let turns = TurnDecoder::of(&content).map_err(|why| match why {
                     Undecoded::Changed => ReadError::ChangedBegin,
                     Undecoded::Unreadable => ReadError::NotARecord,
                 })?;

@@ -12,11 +12,12 @@ use std::cell::RefCell;
 use std::io::Write as _;
 use std::rc::Rc;
 
-use crate::bytes::Bytes;
-use crate::frames::{Frames, Turns, first};
+use crate::bytes::ByteReader;
+use crate::frames::{Frames, TurnDecoder, first};
 use crate::turn::{Undecoded, put, take};
 use crate::{
-    Applied, Begin, Change, Overruled, ReadError, RecordFile, RecordedTransition, Records, SafetyTexts, TurnMade,
+    Applied, Begin, Overruled, ReadError, RecordFile, RecordedChange, RecordedTransition, Records, SafetyTexts,
+    TurnMade,
 };
 
 fn begin() -> Begin {
@@ -25,24 +26,24 @@ fn begin() -> Begin {
     Begin { plan: "P".to_owned(), period: Nanos(100), files, safety: Some(safety), ..Begin::default() }
 }
 
-fn changes() -> Vec<Change> {
+fn changes() -> Vec<RecordedChange> {
     vec![
-        Change::Attribute { module: "heading".to_owned(), name: "range".to_owned(), kind: 3 },
-        Change::Published { attribute: 0, at: Nanos(7), bits: 1.5_f64.to_bits() },
-        Change::Vanished(0),
-        Change::Files(begin().files),
-        Change::Armed { files: 0, plan: "P".to_owned(), when: 2 },
-        Change::Cancelled,
-        Change::RolledBack("asked for".to_owned()),
-        Change::Trial(Nanos(3)),
-        Change::Limit { key: "speed".to_owned(), value: 0.25 },
-        Change::Skipped,
-        Change::Late,
-        Change::Back,
-        Change::SafetyReset,
-        Change::Peer { name: "ada".to_owned(), rounds: 2, state: None },
-        Change::Peer { name: "bob".to_owned(), rounds: 1, state: Some(peer_state()) },
-        Change::Path {
+        RecordedChange::Attribute { module: "heading".to_owned(), name: "range".to_owned(), kind: 3 },
+        RecordedChange::Published { attribute: 0, at: Nanos(7), bits: 1.5_f64.to_bits() },
+        RecordedChange::Vanished(0),
+        RecordedChange::Files(begin().files),
+        RecordedChange::Armed { files: 0, plan: "P".to_owned(), when: 2 },
+        RecordedChange::Cancelled,
+        RecordedChange::RolledBack("asked for".to_owned()),
+        RecordedChange::Trial(Nanos(3)),
+        RecordedChange::Limit { key: "speed".to_owned(), value: 0.25 },
+        RecordedChange::Skipped,
+        RecordedChange::Late,
+        RecordedChange::Back,
+        RecordedChange::SafetyReset,
+        RecordedChange::Peer { name: "ada".to_owned(), rounds: 2, state: None },
+        RecordedChange::Peer { name: "bob".to_owned(), rounds: 1, state: Some(peer_state()) },
+        RecordedChange::Path {
             name: "back".to_owned(),
             setpoints: vec![Setpoint { at: Nanos(5), heading: Radians(0.5), speed: MetersPerSecond(0.25) }],
         },
@@ -104,9 +105,9 @@ fn encoded() -> (Vec<u8>, Vec<u8>) {
 #[test]
 fn a_turn_is_read_as_it_was_written() {
     let (first, turn) = encoded();
-    let (begun, constants) = Begin::take(&mut Bytes(&first)).unwrap();
+    let (begun, constants) = Begin::take(&mut ByteReader(&first)).unwrap();
     assert_eq!(begun, begin());
-    let read = take(&mut Bytes(&turn), None, &constants).unwrap();
+    let read = take(&mut ByteReader(&turn), None, &constants).unwrap();
     assert_eq!(read.y, output());
     assert_eq!((read.changes, read.overruled.unwrap().rule), (changes(), "speed".to_owned()));
     assert_eq!((read.plan, read.state, read.steps.len()), (2, 5, 1));
@@ -116,18 +117,18 @@ fn a_turn_is_read_as_it_was_written() {
 #[test]
 fn any_byte_of_a_turn_may_be_another() {
     let (first, turn) = encoded();
-    let (_, constants) = Begin::take(&mut Bytes(&first)).unwrap();
+    let (_, constants) = Begin::take(&mut ByteReader(&first)).unwrap();
     for mask in [0x01, 0x10, 0x80, 0xFF] {
         for place in 0..turn.len() {
             let mut changed = turn.clone();
             changed[place] ^= mask;
-            let _ = take(&mut Bytes(&changed), None, &constants);
-            assert_eq!(take(&mut Bytes(&turn[..place]), None, &constants), None, "cut at {place}");
+            let _ = take(&mut ByteReader(&changed), None, &constants);
+            assert_eq!(take(&mut ByteReader(&turn[..place]), None, &constants), None, "cut at {place}");
         }
         for place in 0..first.len() {
             let mut changed = first.clone();
             changed[place] ^= mask;
-            let _ = Begin::take(&mut Bytes(&changed));
+            let _ = Begin::take(&mut ByteReader(&changed));
         }
     }
 }
@@ -176,7 +177,7 @@ fn contents(begin: &Begin, turns: u64) -> Vec<Vec<u8>> {
 /// Reads the beginning of a record and its turns; returns the number of turns before the first refused turn, and the
 /// reason for the refusal.
 fn read(begin: &[u8], turns: &[&[u8]]) -> (usize, Option<Undecoded>) {
-    let mut chained = match Turns::of(begin) {
+    let mut chained = match TurnDecoder::of(begin) {
         Ok(turns) => turns,
         Err(why) => return (0, Some(why)),
     };

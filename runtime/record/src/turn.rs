@@ -2,10 +2,10 @@
 
 use mdle_runtime::{Cause, Nanos, Sensed, Transition, Twist};
 
-use crate::bytes::{Bytes, put_u32, put_u64};
+use crate::bytes::{ByteReader, put_u32, put_u64};
 use crate::change::{put_changes, put_overruled, take_changes, take_overruled};
 use crate::exact::{self, put_twist, take_twist};
-use crate::{Change, Constants, Overruled};
+use crate::{Constants, Overruled, RecordedChange};
 
 /// A turn of a current run, without its output.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +23,7 @@ pub struct TurnMade<'a> {
     /// State of the plan at the end of the turn; 0 if no plan was active.
     pub state: u64,
     /// Changes that influence the turn, besides its output.
-    pub changes: &'a [Change],
+    pub changes: &'a [RecordedChange],
     /// Input that a safety rule changed.
     pub overruled: Option<&'a Overruled>,
 }
@@ -57,7 +57,7 @@ pub struct RecordedTurn {
     /// Transitions of the turn, in order.
     pub steps: Vec<RecordedTransition>,
     /// Changes that influenced the turn, besides its output, in order.
-    pub changes: Vec<Change>,
+    pub changes: Vec<RecordedChange>,
     /// Input that a safety rule changed.
     pub overruled: Option<Overruled>,
 }
@@ -131,7 +131,7 @@ pub(crate) fn put(
 }
 
 /// Reads a turn that was written with the previous output `before`; returns `None` if the bytes are malformed.
-pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<RecordedTurn> {
+pub(crate) fn take(from: &mut ByteReader<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<RecordedTurn> {
     let (number, t) = (from.u64()?, from.nanos()?);
     let y = exact::take(from, before, constants)?;
     let (changes, overruled) = (take_changes(from)?, take_overruled(from)?);
@@ -147,7 +147,7 @@ pub(crate) fn take(from: &mut Bytes<'_>, before: Option<&Sensed>, constants: &Co
         let (left, scope, is_completed) = (from.u64()?, from.u32()?, from.u8()? != 0);
         let level = u16::try_from(from.u32()?).ok()?;
         let cause = if is_completed { Cause::Completed(level) } else { Cause::Fired(level) };
-        Some(RecordedTransition { from: left, scope, cause, to: from.u64()?, operands: from.list(Bytes::u32)? })
+        Some(RecordedTransition { from: left, scope, cause, to: from.u64()?, operands: from.list(ByteReader::u32)? })
     })?;
     Some(RecordedTurn { number, t, y, sent, applied, plan, state, steps, changes, overruled })
 }

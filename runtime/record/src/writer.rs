@@ -9,8 +9,8 @@ use mcap::{Attachment, WriteOptions, Writer};
 use mdle_runtime::Nanos;
 
 use crate::Begin;
-use crate::bytes::Bytes;
-use crate::frames::{Tag, Turns, first};
+use crate::bytes::ByteReader;
+use crate::frames::{Tag, TurnDecoder, first};
 use crate::turn::Undecoded;
 use crate::viewers::CHANNELS;
 
@@ -26,22 +26,22 @@ pub(crate) const TURN: &str = "mdle.turn.2";
 pub struct RecordFile<W: Write> {
     /// Bytes of an incomplete frame.
     pending: Vec<u8>,
-    parts: Parts<W>,
+    parts: WriterState<W>,
 }
 
 /// State of a record that is being written.
-enum Parts<W: Write> {
+enum WriterState<W: Write> {
     /// The beginning has not been written yet.
     Unbegun(Option<W>),
-    Begun(Box<Open<W>>),
+    Begun(Box<OpenRecord<W>>),
     /// The record is complete, or could not be written.
     Closed,
 }
 
 /// A record that is being written.
-struct Open<W: Write> {
+struct OpenRecord<W: Write> {
     writer: Writer<NoSeek<W>>,
-    turns: Turns,
+    turns: TurnDecoder,
     channels: Channels,
     /// Number of messages so far.
     sequence: u32,
@@ -62,32 +62,34 @@ struct Channels {
 impl<W: Write> RecordFile<W> {
     /// Returns the writer of a record to `to`.
     pub fn new(to: W) -> Self {
-        Self { pending: Vec::new(), parts: Parts::Unbegun(Some(to)) }
+        Self { pending: Vec::new(), parts: WriterState::Unbegun(Some(to)) }
     }
 
     fn frame(&mut self, tag: Tag, content: &[u8]) -> io::Result<()> {
         match (&mut self.parts, tag) {
-            (Parts::Unbegun(to), Tag::Begin) => {
+            (WriterState::Unbegun(to), Tag::Begin) => {
                 let to = to.take().ok_or_else(|| invalid("a record begins once"))?;
-                self.parts = Parts::Begun(Box::new(Open::begin(to, content)?));
+                self.parts = WriterState::Begun(Box::new(OpenRecord::begin(to, content)?));
                 Ok(())
             }
-            (Parts::Begun(open), Tag::Turn) => open.turn(content),
-            (Parts::Begun(open), Tag::Transition) => open.json(open.channels.transition, content),
-            (Parts::Begun(open), Tag::Event) => open.json(open.channels.event, content),
-            (Parts::Begun(open), Tag::End) => {
+            (WriterState::Begun(open), Tag::Turn) => open.turn(content),
+            (WriterState::Begun(open), Tag::Transition) => open.json(open.channels.transition, content),
+            (WriterState::Begun(open), Tag::Event) => open.json(open.channels.event, content),
+            (WriterState::Begun(open), Tag::End) => {
                 open.writer.finish().map_err(unwritten)?;
-                self.parts = Parts::Closed;
+                self.parts = WriterState::Closed;
                 Ok(())
             }
-            (Parts::Unbegun(_), Tag::End) => Ok(()),
-            (Parts::Closed | Parts::Unbegun(_) | Parts::Begun(_), _) => Err(invalid("a frame in the wrong place")),
+            (WriterState::Unbegun(_), Tag::End) => Ok(()),
+            (WriterState::Closed | WriterState::Unbegun(_) | WriterState::Begun(_), _) => {
+                Err(invalid("a frame in the wrong place"))
+            }
         }
     }
 
     /// Abandons the record as it is: the library would panic on completing a file that cannot be written.
     fn give_up(&mut self) {
-        std::mem::forget(std::mem::replace(&mut self.parts, Parts::Closed));
+        std::mem::forget(std::mem::replace(&mut self.parts, WriterState::Closed));
     }
 }
 
@@ -120,9 +122,9 @@ impl<W: Write> Drop for RecordFile<W> {
     }
 }
 
-impl<W: Write> Open<W> {
+impl<W: Write> OpenRecord<W> {
     fn begin(to: W, content: &[u8]) -> io::Result<Self> {
-        let turns = Turns::of(content).map_err(|_| invalid("the begin cannot be read"))?;
+        let turns = TurnDecoder::of(content).map_err(|_| invalid("the begin cannot be read"))?;
         let options = WriteOptions::new()
             .library(format!("mdle {}", turns.begin.version))
             .compression(None)
@@ -167,7 +169,7 @@ impl<W: Write> Open<W> {
     }
 
     fn json(&mut self, channel: u16, content: &[u8]) -> io::Result<()> {
-        let mut from = Bytes(content);
+        let mut from = ByteReader(content);
         let t = from.nanos().ok_or_else(|| invalid("a message without a time"))?;
         self.message(channel, t, from.0)
     }

@@ -16,7 +16,7 @@ const LARGEST: u64 = 1_000_000;
 
 /// A key with its value, and the origin of the value.
 #[derive(Debug, Clone, PartialEq)]
-struct Entry {
+struct SettingEntry {
     key: Key,
     value: String,
     from: String,
@@ -28,7 +28,7 @@ pub struct Settings {
     file: Option<String>,
     /// Values of the file whose keys have not been asked for yet.
     written: Table,
-    entries: Vec<Entry>,
+    entries: Vec<SettingEntry>,
 }
 
 impl Settings {
@@ -128,7 +128,7 @@ impl Settings {
 
     /// Records `value` with its origin for `--print-config`, and returns it.
     fn noted<W: fmt::Debug>(&mut self, key: Key, value: W, from: String) -> W {
-        self.entries.push(Entry { key, value: format!("{value:?}"), from });
+        self.entries.push(SettingEntry { key, value: format!("{value:?}"), from });
         value
     }
 }
@@ -136,7 +136,7 @@ impl Settings {
 /// Prints TOML that `--config` can read, with the meaning and the origin of each value.
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for Entry { key, value, from } in &self.entries {
+        for SettingEntry { key, value, from } in &self.entries {
             let line = format!("{} = {value}", key.in_a_file());
             writeln!(f, "{line:34} # {} ({from})", key.about())?;
         }

@@ -16,7 +16,7 @@ use std::time::{Duration, Instant};
 
 use mdle_engine::{Candidate, Declare, Fault, In, Module, Modules, Out, Service, Threads};
 use mdle_host::{
-    Call, Moment, Pilot, PilotFault, RecordedPlan, Refusal, RunTerms, Transitions, claim_for_worker, run_piloted,
+    Call, Pilot, PilotFault, PilotTurn, RecordedPlan, Refusal, RunTerms, Transitions, claim_for_worker, run_piloted,
 };
 use mdle_runtime::{Machine, Turn};
 use stopwatch::{Nothing, Rest, Stopwatch, bare, late};
@@ -163,7 +163,7 @@ impl Pilot for Eight {
 
     fn turn(
         &mut self,
-        Moment { t, number, .. }: Moment<'_, Nothing>,
+        PilotTurn { t, number, .. }: PilotTurn<'_, Nothing>,
         _: &mut Transitions,
     ) -> Result<Turn<()>, PilotFault> {
         let begun = Instant::now();
@@ -176,7 +176,7 @@ impl Pilot for Eight {
         Ok(Turn::Law(()))
     }
 
-    fn divert(&mut self, _: Rest, _: Moment<'_, Nothing>) {}
+    fn divert(&mut self, _: Rest, _: PilotTurn<'_, Nothing>) {}
 
     fn plan_number(&self) -> u64 {
         1

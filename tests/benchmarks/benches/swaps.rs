@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::{CompiledPlans, Engine, Library, PlanEvent, PlanFacts, PlanSource, StoredPlan, When};
-use mdle_host::{Microphones, Moment, Pilot as _, RunTerms, StopRequest, Time, Transitions, claim_for_worker};
+use mdle_host::{Microphones, Pilot as _, PilotTurn, RunTerms, StopRequest, Time, Transitions, claim_for_worker};
 use mdle_runtime::{Nanos, Robot as _, Twist};
 use mdle_sim::alphabet::Alphabet;
 use mdle_sim::{Simulated, World};
@@ -69,7 +69,7 @@ fn turns(engine: &mut Engine<Alphabet>, texts: Vec<String>) -> [Vec<u64>; 3] {
     for number in 0..(SWAPS + 2) * EACH {
         let begun = Instant::now();
         let t = Nanos(number * PERIOD.as_nanos() as u64);
-        engine.turn(Moment { y: &y, t, number }, &mut transitions).expect("a turn");
+        engine.turn(PilotTurn { y: &y, t, number }, &mut transitions).expect("a turn");
         let nanos = begun.elapsed().as_nanos() as u64;
         let mut begins = None;
         for event in engine.plans_mut().take_events() {

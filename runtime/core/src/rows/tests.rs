@@ -2,7 +2,7 @@
 
 use std::vec::Vec;
 
-use super::{InRows, Reading};
+use super::{ConditionValues, InRows};
 use crate::fsm::{Atom, Bracket};
 use crate::{
     Alphabet, Argument, Begin, Cause, Comparison, Completes, Condition, Control, Cursor, Examined, Fact, Follows,
@@ -83,8 +83,8 @@ impl Alphabet for Toy {
 }
 
 /// Returns the values that a condition with these operands reads three nanoseconds after its scope was entered.
-fn at<'r, M>(operands: &'r [Condition<Fires>], y: &'r Sensed, memory: &'r M) -> Reading<'r, Fires, Sensed, M> {
-    Reading { stalled: None, y, since: Nanos(3), level: 0, way: Nanometers(5), operands, memory }
+fn at<'r, M>(operands: &'r [Condition<Fires>], y: &'r Sensed, memory: &'r M) -> ConditionValues<'r, Fires, Sensed, M> {
+    ConditionValues { stalled: None, y, since: Nanos(3), level: 0, way: Nanometers(5), operands, memory }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use mdle_compiler::load::LoadedPlan;
 use mdle_host::{RunTerms, Time, claim_for_worker};
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::{ModuleRead, Nanos};
 
 use super::loading::{Loading, NewModule};
@@ -113,24 +113,24 @@ impl<A: EngineAlphabet> Engine<A> {
 
     /// Repeats a change of the recorded run before the next turn. The caller has to repeat armed plans (with
     /// [`Plans::replace`]), changes of safety rules, and recorded paths, which are part of outputs.
-    pub fn repeat(&mut self, change: &Change) {
+    pub fn repeat(&mut self, change: &RecordedChange) {
         match change {
-            Change::Cancelled => self.plans.cancel(),
+            RecordedChange::Cancelled => self.plans.cancel(),
             // The record contains only changes that were carried out.
-            Change::RolledBack(why) => drop(self.rollback(why)),
-            Change::Trial(time) => self.plans.set_trial(*time),
-            Change::Attribute { .. }
-            | Change::Vanished(_)
-            | Change::Published { .. }
-            | Change::Files(_)
-            | Change::Armed { .. }
-            | Change::Limit { .. }
-            | Change::SafetyReset
-            | Change::Skipped
-            | Change::Late
-            | Change::Back
-            | Change::Peer { .. }
-            | Change::Path { .. } => {
+            RecordedChange::RolledBack(why) => drop(self.rollback(why)),
+            RecordedChange::Trial(time) => self.plans.set_trial(*time),
+            RecordedChange::Attribute { .. }
+            | RecordedChange::Vanished(_)
+            | RecordedChange::Published { .. }
+            | RecordedChange::Files(_)
+            | RecordedChange::Armed { .. }
+            | RecordedChange::Limit { .. }
+            | RecordedChange::SafetyReset
+            | RecordedChange::Skipped
+            | RecordedChange::Late
+            | RecordedChange::Back
+            | RecordedChange::Peer { .. }
+            | RecordedChange::Path { .. } => {
                 if let Some(repeats) = &mut self.repeats {
                     repeats.repeat(change, self.modules.board_mut());
                 }
@@ -273,7 +273,7 @@ impl<A: EngineAlphabet> Engine<A> {
     /// Fails if no plan is on trial.
     pub fn rollback(&mut self, why: &str) -> Result<(), NoTrial> {
         self.go_back(why)?;
-        self.plans.note(Change::RolledBack(why.to_owned()));
+        self.plans.note(RecordedChange::RolledBack(why.to_owned()));
         Ok(())
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 
 use super::event::When;
 
@@ -12,7 +12,7 @@ pub(crate) struct PlanChanges {
     /// Maps the hash of a plan's files to their number in the record. Only hashes are kept, because a run may have any
     /// number of plans.
     files: BTreeMap<[u8; 32], u32>,
-    changes: Vec<Change>,
+    changes: Vec<RecordedChange>,
 }
 
 impl PlanChanges {
@@ -21,19 +21,19 @@ impl PlanChanges {
     pub(crate) fn armed(&mut self, files: &[(String, String)], plan: &str, when: When) {
         let next = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
         let number = *self.files.entry(hash(files)).or_insert_with(|| {
-            self.changes.push(Change::Files(files.to_vec()));
+            self.changes.push(RecordedChange::Files(files.to_vec()));
             next
         });
-        self.changes.push(Change::Armed { files: number, plan: plan.to_owned(), when: when.number() });
+        self.changes.push(RecordedChange::Armed { files: number, plan: plan.to_owned(), when: when.number() });
     }
 
     /// Records any other change.
-    pub(crate) fn note(&mut self, change: Change) {
+    pub(crate) fn note(&mut self, change: RecordedChange) {
         self.changes.push(change);
     }
 
     /// Takes the changes since the last call.
-    pub(crate) fn take(&mut self) -> Vec<Change> {
+    pub(crate) fn take(&mut self) -> Vec<RecordedChange> {
         std::mem::take(&mut self.changes)
     }
 }
@@ -62,9 +62,10 @@ mod tests {
         let changes = changes.take();
         let numbers = changes
             .iter()
-            .filter_map(|change| if let Change::Armed { files, .. } = change { Some(*files) } else { None });
+            .filter_map(|change| if let RecordedChange::Armed { files, .. } = change { Some(*files) } else { None });
         assert_eq!(numbers.collect::<Vec<_>>(), [0, 1, 0, 2, 1]);
-        let texts: Vec<_> = changes.iter().filter(|change| matches!(change, Change::Files(_))).cloned().collect();
-        assert_eq!(texts, [0, 1, 3].map(|place: usize| Change::Files(plans[place].clone())));
+        let texts: Vec<_> =
+            changes.iter().filter(|change| matches!(change, RecordedChange::Files(_))).cloned().collect();
+        assert_eq!(texts, [0, 1, 3].map(|place: usize| RecordedChange::Files(plans[place].clone())));
     }
 }

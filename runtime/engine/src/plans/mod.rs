@@ -24,7 +24,7 @@ use compiler::Compiler;
 pub use event::{NoTrial, PlanEvent, When};
 use flight::{Desk, Flight};
 use mdle_compiler::load::LoadedPlan;
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::{Machine, ModuleRead, Nanos, Plan as _};
 pub use order::{Compile, CompiledPlans, PlanSource};
 pub(crate) use peers::ENDED;
@@ -127,12 +127,12 @@ impl<A: EngineAlphabet> Plans<A> {
     }
 
     /// Takes the changes since the last call.
-    pub(crate) fn take_changes(&mut self) -> Vec<Change> {
+    pub(crate) fn take_changes(&mut self) -> Vec<RecordedChange> {
         self.changes.as_mut().map(PlanChanges::take).unwrap_or_default()
     }
 
     /// Collects a change for the record if the run is recorded.
-    pub(crate) fn note(&mut self, change: Change) {
+    pub(crate) fn note(&mut self, change: RecordedChange) {
         if let Some(changes) = &mut self.changes {
             changes.note(change);
         }
@@ -141,7 +141,7 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Sets the trial duration of plans that take over from now on.
     pub fn set_trial(&mut self, trial: Nanos) {
         self.trial = trial;
-        self.note(Change::Trial(trial));
+        self.note(RecordedChange::Trial(trial));
     }
 
     /// Returns the trial duration of plans that take over.

@@ -4,7 +4,7 @@ use std::io;
 use std::sync::Arc;
 
 use mdle_compiler::load::LoadedPlan;
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::Plan as _;
 
 use super::compiler::{Compiler, CompilerThread};
@@ -118,7 +118,7 @@ impl<A: EngineAlphabet> Plans<A> {
     /// that is being compiled.
     pub fn cancel(&mut self) {
         if self.armed.is_some() {
-            self.note(Change::Cancelled);
+            self.note(RecordedChange::Cancelled);
         }
         self.take_back();
     }

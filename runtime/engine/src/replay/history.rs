@@ -1,7 +1,7 @@
 //! Collects the inputs of an engine's turns other than the robot's outputs: module values that plans and safety rules
 //! read, states of other robots, recorded paths, and changes of plans.
 
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::{Links, ModuleRead, Nanos, Peer, StoredPath};
 
 use crate::attribute::{AGE, AttributeKind, AttributeName};
@@ -13,7 +13,7 @@ pub(crate) struct History {
     /// Attributes that the record contains, by number; `None` for a removed attribute.
     known: Vec<Option<Known>>,
     /// Changes of the current turn.
-    changes: Vec<Change>,
+    changes: Vec<RecordedChange>,
 }
 
 /// An attribute that the record contains.
@@ -30,7 +30,7 @@ impl History {
     /// safety rules read now or may read in later turns.
     pub(crate) fn begin(
         &mut self,
-        plans: Vec<Change>,
+        plans: Vec<RecordedChange>,
         reads: impl Iterator<Item = &'static ModuleRead>,
         board: &Board,
     ) {
@@ -50,13 +50,13 @@ impl History {
     }
 
     /// Records a change of the current turn.
-    pub(crate) fn note(&mut self, change: Change) {
+    pub(crate) fn note(&mut self, change: RecordedChange) {
         self.changes.push(change);
     }
 
     /// Records the states of other robots as known in the current turn.
     pub(crate) fn heard(&mut self, links: &Links) {
-        let peers = links.peers().map(|Peer { name, rounds, state }| Change::Peer {
+        let peers = links.peers().map(|Peer { name, rounds, state }| RecordedChange::Peer {
             name: (*name).to_owned(),
             rounds: *rounds,
             state: *state,
@@ -66,11 +66,11 @@ impl History {
 
     /// Records that a newly recorded path has replaced the path with the same name.
     pub(crate) fn replaced(&mut self, StoredPath { name, setpoints }: &StoredPath) {
-        self.changes.push(Change::Path { name: (*name).to_owned(), setpoints: setpoints.to_vec() });
+        self.changes.push(RecordedChange::Path { name: (*name).to_owned(), setpoints: setpoints.to_vec() });
     }
 
     /// Takes the changes of the turn.
-    pub(crate) fn take(&mut self) -> Vec<Change> {
+    pub(crate) fn take(&mut self) -> Vec<RecordedChange> {
         std::mem::take(&mut self.changes)
     }
 
@@ -84,7 +84,7 @@ impl History {
                 })
             };
             if known.take_if(has_gone).is_some() {
-                self.changes.push(Change::Vanished(number));
+                self.changes.push(RecordedChange::Vanished(number));
             }
         }
     }
@@ -95,7 +95,7 @@ impl History {
         let number = self.known.iter().position(is_same).unwrap_or_else(|| {
             let (name, kind) = (post.name.clone(), post.about.kind);
             let (module, attribute) = (name.module.to_string(), name.attribute.to_string());
-            self.changes.push(Change::Attribute { module, name: attribute, kind: kind.number() });
+            self.changes.push(RecordedChange::Attribute { module, name: attribute, kind: kind.number() });
             self.known.push(Some(Known { name, kind, reading: None }));
             self.known.len() - 1
         });
@@ -104,7 +104,7 @@ impl History {
         if let Some((at, bits)) = reading.filter(|_| known.reading != reading) {
             known.reading = reading;
             let attribute = u32::try_from(number).unwrap_or(u32::MAX);
-            self.changes.push(Change::Published { attribute, at, bits });
+            self.changes.push(RecordedChange::Published { attribute, at, bits });
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Repeats the changes of a recorded run in an engine. The board contains the values that modules published, although
 //! the modules themselves are not loaded.
 
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::{Links, Peer, PeerState};
 
 use crate::attribute::{AttributeKind, AttributeName, Reading, Value};
@@ -36,36 +36,36 @@ enum PlanProgress {
 impl Repeats {
     /// Repeats a change of an attribute, of another robot, or of the progress of the plan's turn; ignores all other
     /// changes.
-    pub(crate) fn repeat(&mut self, change: &Change, board: &mut Board) {
+    pub(crate) fn repeat(&mut self, change: &RecordedChange, board: &mut Board) {
         match change {
-            Change::Attribute { module, name, kind } => {
+            RecordedChange::Attribute { module, name, kind } => {
                 let Some(kind) = AttributeKind::of_number(*kind) else { return };
                 let name = AttributeName::new(module, name);
                 board.restore(name.clone(), kind);
                 self.attributes.push((name, kind));
             }
-            Change::Vanished(attribute) => {
+            RecordedChange::Vanished(attribute) => {
                 if let Some((name, _)) = self.attributes.get(*attribute as usize) {
                     board.forget(name);
                 }
             }
-            Change::Published { attribute, at, bits } => {
+            RecordedChange::Published { attribute, at, bits } => {
                 if let Some((name, kind)) = self.attributes.get(*attribute as usize) {
                     board.restore_reading(name, Reading { value: Value::of_bits(*kind, *bits), at: *at });
                 }
             }
-            Change::Skipped => self.progress = PlanProgress::Skipped,
-            Change::Late => self.progress = PlanProgress::Late,
-            Change::Back => self.progress = PlanProgress::Back,
-            Change::Peer { name, rounds, state } => self.peers.push((name.clone(), *rounds, *state)),
-            Change::Files(_)
-            | Change::Armed { .. }
-            | Change::Cancelled
-            | Change::RolledBack(_)
-            | Change::Trial(_)
-            | Change::Limit { .. }
-            | Change::SafetyReset
-            | Change::Path { .. } => {}
+            RecordedChange::Skipped => self.progress = PlanProgress::Skipped,
+            RecordedChange::Late => self.progress = PlanProgress::Late,
+            RecordedChange::Back => self.progress = PlanProgress::Back,
+            RecordedChange::Peer { name, rounds, state } => self.peers.push((name.clone(), *rounds, *state)),
+            RecordedChange::Files(_)
+            | RecordedChange::Armed { .. }
+            | RecordedChange::Cancelled
+            | RecordedChange::RolledBack(_)
+            | RecordedChange::Trial(_)
+            | RecordedChange::Limit { .. }
+            | RecordedChange::SafetyReset
+            | RecordedChange::Path { .. } => {}
         }
     }
 

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use mdle_host::{Intervention, Pilot, Supervisor};
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{Alphabet, Nanos, Plan, Twist};
 
@@ -56,18 +56,18 @@ impl<A: Alphabet> Guardian<A> {
 
     /// Returns a change if the rules were reset since the last call, and a change for each limit that then differs from
     /// `recorded`; updates `recorded`.
-    pub(crate) fn changes_since(&mut self, recorded: &mut Limits) -> Vec<Change> {
+    pub(crate) fn changes_since(&mut self, recorded: &mut Limits) -> Vec<RecordedChange> {
         let mut limits = self.envelope.rules().limits;
         let mut changes = Vec::new();
         if std::mem::take(&mut self.is_reset) {
             *recorded = self.envelope.first_limits();
-            changes.push(Change::SafetyReset);
+            changes.push(RecordedChange::SafetyReset);
         }
         for measure in Measure::ALL {
             let (before, value) = (measure.of(recorded), *measure.of(&mut limits));
             if before.to_bits() != value.to_bits() {
                 *before = value;
-                changes.push(Change::Limit { key: measure.key().to_owned(), value });
+                changes.push(RecordedChange::Limit { key: measure.key().to_owned(), value });
             }
         }
         changes
@@ -107,11 +107,11 @@ where
         self.warn(say);
     }
 
-    fn repeat(&mut self, change: &Change) {
-        if *change == Change::SafetyReset {
+    fn repeat(&mut self, change: &RecordedChange) {
+        if *change == RecordedChange::SafetyReset {
             let _ = self.envelope.reset();
         }
-        if let Change::Limit { key, value } = change
+        if let RecordedChange::Limit { key, value } = change
             && let Some(measure) = Measure::ALL.into_iter().find(|measure| measure.key() == key)
         {
             *measure.of(&mut self.envelope.rules_mut().limits) = *value;

@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use mdle_host::{Break, Intervention, Orders, RunTerms, StopRequest, Supervisor};
-use mdle_record::Change;
+use mdle_host::{Break, BreakOrders, Intervention, RunTerms, StopRequest, Supervisor};
+use mdle_record::RecordedChange;
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{Alphabet, Nanos, Twist};
 
@@ -88,7 +88,7 @@ where
         }
     }
 
-    fn at_break(&mut self, moment: &mut Break<'_, Engine<A>>) -> Orders {
+    fn at_break(&mut self, moment: &mut Break<'_, Engine<A>>) -> BreakOrders {
         self.desk.begin_break();
         self.parts.recorder.made(moment);
         self.parts.recorded = moment.turns;
@@ -97,7 +97,7 @@ where
         while self.parts.clock.is_paused && !moment.is_over && !self.parts.engine.quits && !self.request.is_made() {
             self.serve(moment, Some(LOOK));
         }
-        Orders { pace: self.parts.clock.ordered.take(), end: self.parts.engine.quits }
+        BreakOrders { pace: self.parts.clock.ordered.take(), end: self.parts.engine.quits }
     }
 
     fn at_end(&mut self, moment: &Break<'_, Engine<A>>) {
@@ -118,7 +118,7 @@ where
         self.recorded = limits;
     }
 
-    fn take_changes(&mut self) -> Vec<Change> {
+    fn take_changes(&mut self) -> Vec<RecordedChange> {
         let Some((recorded, guardian)) = self.recorded.as_mut().zip(self.parts.safety.0.as_mut()) else {
             return Vec::new();
         };

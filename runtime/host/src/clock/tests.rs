@@ -1,7 +1,7 @@
 //! Tests the clock with a time that each test advances by hand.
 
 use super::*;
-use crate::signals::Signal;
+use crate::signals::ProcessSignal;
 
 /// Time that passes only in sleeps, and when the test advances it.
 #[derive(Debug, Default)]
@@ -135,10 +135,10 @@ fn stepped_time_goes_on_from_now_after_a_suspension() {
 #[test]
 fn a_signal_cuts_the_wait_short() {
     let signals = Signals::unheard();
-    signals.raise(Signal::TERMINATE);
+    signals.raise(ProcessSignal::TERMINATE);
     for time in [Time::Wall, Time::Stepped(Pace::Times(0.001)), Time::Stepped(Pace::Max)] {
         let mut clock = Clock::begin(ByHand::default(), time, PERIOD, None);
-        assert_eq!(clock.next_turn(&signals), Err(RunEnd::Signal(Signal::TERMINATE)));
+        assert_eq!(clock.next_turn(&signals), Err(RunEnd::Signal(ProcessSignal::TERMINATE)));
         assert_eq!(clock.instants.0, Duration::ZERO);
     }
 }

@@ -7,7 +7,7 @@ use mdle_runtime::{MetersPerSecond, Nanos, Radians};
 use crate::background_writer::Outlet;
 
 /// A path that is being recorded.
-pub(crate) struct Recorder<W: Write = Outlet> {
+pub(crate) struct PathRecording<W: Write = Outlet> {
     file: W,
     /// Heading by odometry in the first row; `None` before the first row.
     begun: Option<Radians>,
@@ -16,7 +16,7 @@ pub(crate) struct Recorder<W: Write = Outlet> {
     written: io::Result<()>,
 }
 
-impl<W: Write> Recorder<W> {
+impl<W: Write> PathRecording<W> {
     /// Returns a recorder that writes to `file`.
     pub(crate) fn new(mut file: W) -> Self {
         let written = file.write_all(b"time s, heading deg, speed cm/s\n");

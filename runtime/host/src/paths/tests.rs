@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use mdle_runtime::{MetersPerSecond, Nanos, Radians, RadiansPerSecond, Setpoint, Twist};
 
-use super::record::Recorder;
+use super::record::PathRecording;
 use super::text::{TextFault, setpoints, utf8};
 
 const FASTEST: Twist = Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) };
@@ -122,7 +122,7 @@ fn drive(state: &mut u64) -> Vec<(Nanos, Radians, MetersPerSecond)> {
 /// Returns the recording of a drive.
 fn recorded(drive: &[(Nanos, Radians, MetersPerSecond)]) -> String {
     let mut file = Vec::new();
-    let mut recorder = Recorder::new(&mut file);
+    let mut recorder = PathRecording::new(&mut file);
     for (t, theta, speed) in drive {
         recorder.take(theta.wrapped(), *speed, *t);
     }
@@ -196,7 +196,7 @@ fn a_failed_recording_is_reported_at_the_end() {
             Ok(())
         }
     }
-    let mut recorder = Recorder::new(Full);
+    let mut recorder = PathRecording::new(Full);
     for turn in 0..5_000 {
         recorder.take(Radians(0.0), MetersPerSecond(0.2), Nanos(turn * 100_000_000));
     }

@@ -38,12 +38,12 @@ pub(super) struct TextFault {
 
 /// A cell of a row: the text between two commas.
 #[derive(Debug, Clone, Copy)]
-struct Cell<'t> {
+struct RowCell<'t> {
     place: (usize, usize),
     text: &'t str,
 }
 
-impl Cell<'_> {
+impl RowCell<'_> {
     fn wrong(&self, what: String) -> TextFault {
         TextFault { place: Some(self.place), what }
     }
@@ -79,7 +79,7 @@ pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, Tex
         return Err(TextFault { place: None, what: format!("there is nothing in it; a path begins with {HEADER}") });
     };
     let units = units(&cells(line, header))?;
-    let mut rows = Rows { units, fastest, setpoints: Vec::new() };
+    let mut rows = PathRows { units, fastest, setpoints: Vec::new() };
     lines.try_for_each(|(line, row)| rows.push(&cells(line, row)))?;
     if rows.setpoints.len() < 2 {
         let what = "a path needs two rows at least: where it begins, and where it ends".to_owned();
@@ -89,20 +89,20 @@ pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, Tex
 }
 
 /// Returns the cells of a line.
-fn cells(line: usize, text: &str) -> Vec<Cell<'_>> {
+fn cells(line: usize, text: &str) -> Vec<RowCell<'_>> {
     let mut column = 1;
     let cells = text.split(',').map(|cell| {
         let blanks = cell.chars().take_while(|blank| blank.is_whitespace()).count();
         // An empty cell is reported at its start.
         let place = (line, column + if cell.trim().is_empty() { 0 } else { blanks });
         column += cell.chars().count() + 1;
-        Cell { place, text: cell.trim() }
+        RowCell { place, text: cell.trim() }
     });
     cells.collect()
 }
 
 /// Returns the unit of each column.
-fn units(header: &[Cell<'_>]) -> Result<[(&'static str, f64); 3], TextFault> {
+fn units(header: &[RowCell<'_>]) -> Result<[(&'static str, f64); 3], TextFault> {
     if let [cell] = header
         && cell.text.contains([';', '\t'])
     {
@@ -128,7 +128,7 @@ fn units(header: &[Cell<'_>]) -> Result<[(&'static str, f64); 3], TextFault> {
 
 impl Column {
     /// Returns the unit that a cell of the header gives for this column.
-    fn unit(&self, cell: &Cell<'_>) -> Result<(&'static str, f64), TextFault> {
+    fn unit(&self, cell: &RowCell<'_>) -> Result<(&'static str, f64), TextFault> {
         let Self { name, units: [(one, _), (other, _)] } = self;
         let mut words = cell.text.split_whitespace();
         if words.next() != Some(name) {
@@ -147,14 +147,14 @@ impl Column {
 }
 
 /// Setpoints of the rows so far.
-struct Rows {
+struct PathRows {
     units: [(&'static str, f64); 3],
     fastest: Twist,
     setpoints: Vec<Setpoint>,
 }
 
-impl Rows {
-    fn push(&mut self, row: &[Cell<'_>]) -> Result<(), TextFault> {
+impl PathRows {
+    fn push(&mut self, row: &[RowCell<'_>]) -> Result<(), TextFault> {
         let [(_, nanos), (_, radians), (_, metres)] = self.units;
         let (time, heading, speed) = match row {
             [time, heading, speed] => (time, heading, speed),
@@ -177,7 +177,7 @@ impl Rows {
     }
 
     /// Checks and returns the time of the next setpoint, `nanos` nanoseconds after the first.
-    fn time(&self, cell: &Cell<'_>, nanos: f64) -> Result<Nanos, TextFault> {
+    fn time(&self, cell: &RowCell<'_>, nanos: f64) -> Result<Nanos, TextFault> {
         if nanos > LATEST {
             return Err(cell.wrong(format!("no path is as long as {}", self.shown(cell))));
         }
@@ -204,12 +204,12 @@ impl Rows {
     }
 
     /// Returns a time as it is written, with its unit.
-    fn shown(&self, cell: &Cell<'_>) -> String {
+    fn shown(&self, cell: &RowCell<'_>) -> String {
         let [(unit, _), ..] = self.units;
         format!("{} {unit}", cell.text)
     }
 
-    fn check_speed(&self, cell: &Cell<'_>, speed: MetersPerSecond) -> Result<(), TextFault> {
+    fn check_speed(&self, cell: &RowCell<'_>, speed: MetersPerSecond) -> Result<(), TextFault> {
         let ([.., (unit, metres)], fastest) = (self.units, self.fastest.v.0);
         if speed.0.abs() <= fastest * MARGIN {
             return Ok(());
@@ -219,7 +219,7 @@ impl Rows {
     }
 
     /// Checks that the robot can turn from the previous heading to this heading in time.
-    fn check_turn(&self, cell: &Cell<'_>, to: &Setpoint) -> Result<(), TextFault> {
+    fn check_turn(&self, cell: &RowCell<'_>, to: &Setpoint) -> Result<(), TextFault> {
         let Some(from) = self.setpoints.last() else { return Ok(()) };
         let (turn, seconds) = (Radians(to.heading.0 - from.heading.0).wrapped(), to.at.since(from.at).seconds());
         let fastest = self.fastest.omega.0;

@@ -3,7 +3,7 @@
 use mdle_runtime::Cause::{Completed, Fired};
 
 use super::toy::{Act, Run, Stage};
-use crate::signals::Signal;
+use crate::signals::ProcessSignal;
 use crate::{Refusal, Time};
 
 fn quiet() -> Act {
@@ -76,7 +76,10 @@ fn a_robot_gets_the_reason_of_the_end() {
     assert_eq!(ended(vec![quiet()], &["--turns", "3"]), "Lab stopped at 0.2 by --turns");
     assert_eq!(ended(vec![quiet()], &["--timeout", "0.5"]), "Lab stopped at 0.5 by --timeout");
     assert_eq!(ended(vec![quiet(), Act::Fails("no answer")], &[]), "Lab stopped at 0 by a fault");
-    assert_eq!(ended(vec![quiet(), quiet(), Act::Hears(Signal::TERMINATE)], &[]), "Lab stopped at 0.2 by SIGTERM");
+    assert_eq!(
+        ended(vec![quiet(), quiet(), Act::Hears(ProcessSignal::TERMINATE)], &[]),
+        "Lab stopped at 0.2 by SIGTERM"
+    );
 }
 
 #[test]
@@ -133,7 +136,7 @@ fn a_panic_stops_the_robot_and_asks_no_more_of_it() {
 
 #[test]
 fn a_panic_in_the_last_exchange_stops_the_robot_too() {
-    let run = Stage::script([Act::Hears(Signal::INTERRUPT), Act::Panics("oh")]).run(&[]);
+    let run = Stage::script([Act::Hears(ProcessSignal::INTERRUPT), Act::Panics("oh")]).run(&[]);
     insta::assert_snapshot!(way_out(&run), @"
     exchange 0, began 1 go 20 0 at 0, exchange 0, stop
     status 3
@@ -144,7 +147,7 @@ fn a_panic_in_the_last_exchange_stops_the_robot_too() {
 
 #[test]
 fn a_signal_replaces_the_next_input_by_the_null_input() {
-    let run = Stage::script([quiet(), Act::Hears(Signal::INTERRUPT)]).run(&[]);
+    let run = Stage::script([quiet(), Act::Hears(ProcessSignal::INTERRUPT)]).run(&[]);
     insta::assert_snapshot!(way_out(&run), @"
     exchange 0, began 1 go 20 0 at 0, exchange 1, exchange 0, stop, finish
     status 130
@@ -155,13 +158,16 @@ fn a_signal_replaces_the_next_input_by_the_null_input() {
 #[test]
 fn each_signal_has_its_status() {
     let status = |signal| Stage::script([Act::Hears(signal)]).run(&[]).status;
-    assert_eq!([Signal::HANG_UP, Signal::INTERRUPT, Signal::TERMINATE].map(status), [129, 130, 143]);
+    assert_eq!(
+        [ProcessSignal::HANG_UP, ProcessSignal::INTERRUPT, ProcessSignal::TERMINATE].map(status),
+        [129, 130, 143]
+    );
 }
 
 #[test]
 fn a_second_signal_while_the_robot_is_stopped_changes_nothing() {
-    let script = [Act::Hears(Signal::TERMINATE), Act::Hears(Signal::INTERRUPT)];
-    let run = Stage { stop: Act::Hears(Signal::HANG_UP), ..Stage::script(script) }.run(&[]);
+    let script = [Act::Hears(ProcessSignal::TERMINATE), Act::Hears(ProcessSignal::INTERRUPT)];
+    let run = Stage { stop: Act::Hears(ProcessSignal::HANG_UP), ..Stage::script(script) }.run(&[]);
     insta::assert_snapshot!(way_out(&run), @"
     exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish
     status 143
@@ -171,7 +177,7 @@ fn a_second_signal_while_the_robot_is_stopped_changes_nothing() {
 
 #[test]
 fn a_stop_that_fails_is_a_fault_whatever_came_before() {
-    let script = || [Act::Hears(Signal::INTERRUPT)];
+    let script = || [Act::Hears(ProcessSignal::INTERRUPT)];
     let run = Stage { stop: Act::Fails("the line is dead"), ..Stage::script(script()) }.run(&[]);
     insta::assert_snapshot!(way_out(&run), @"
     exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish
@@ -194,7 +200,7 @@ fn what_cannot_be_finished_is_a_fault_of_a_plan_that_is_over_only() {
     status 3
     error: plot.svg cannot be written
     ");
-    let run = Stage { finish: finish(), ..Stage::script([Act::Hears(Signal::TERMINATE)]) }.run(&[]);
+    let run = Stage { finish: finish(), ..Stage::script([Act::Hears(ProcessSignal::TERMINATE)]) }.run(&[]);
     assert_eq!(run.status, 143);
     assert_eq!(run.err, "stopped by SIGTERM\nerror: plot.svg cannot be written\n");
 }
@@ -202,7 +208,7 @@ fn what_cannot_be_finished_is_a_fault_of_a_plan_that_is_over_only() {
 #[cfg(target_os = "linux")]
 #[test]
 fn failures_while_ending_are_reported_in_order() {
-    let script = [Act::Hears(Signal::INTERRUPT), Act::Fails("no answer")];
+    let script = [Act::Hears(ProcessSignal::INTERRUPT), Act::Fails("no answer")];
     let finish = Err("plot.svg cannot be written".to_owned());
     let stage = Stage { stop: Act::Fails("the line is dead"), finish, ..Stage::script(script) };
     insta::assert_snapshot!(way_out(&stage.run(&["--log", "/dev/full"])), @"
@@ -226,7 +232,7 @@ fn a_robot_that_cannot_be_opened_is_sent_nothing() {
 
 #[test]
 fn a_signal_at_the_start_stops_the_robot() {
-    let interrupted = |refusal| Stage { interrupted: Some(Signal::INTERRUPT), refusal, ..Stage::default() };
+    let interrupted = |refusal| Stage { interrupted: Some(ProcessSignal::INTERRUPT), refusal, ..Stage::default() };
     // A robot that ignores the stop request.
     insta::assert_snapshot!(way_out(&interrupted(None).run(&[])), @"
     exchange 0, stop, finish
@@ -269,5 +275,5 @@ fn a_robot_that_may_not_have_stopped_is_a_fault_whatever_ended_the_run() {
     assert_eq!(unstopped(vec![Act::Senses(vec![(0, Fired(0))])], &[]), 3);
     assert_eq!(unstopped(Vec::new(), &["--timeout", "1"]), 3);
     assert_eq!(unstopped(Vec::new(), &["--turns", "3"]), 3);
-    assert_eq!(unstopped(vec![Act::Hears(Signal::TERMINATE)], &[]), 3);
+    assert_eq!(unstopped(vec![Act::Hears(ProcessSignal::TERMINATE)], &[]), 3);
 }

@@ -8,13 +8,13 @@ use mdle_runtime::{Cause, Robot};
 
 use super::plan::ToyPlan;
 use super::toy::Sensed;
-use crate::cycle::Limits;
+use crate::cycle::RunLimits;
 use crate::drive::PilotOnRobot;
 use crate::helm::Helm;
 use crate::pilot::PlanAlone;
 use crate::required::{self, Required};
-use crate::runs::{self, Runs, Terms};
-use crate::signals::{Signal, Signals};
+use crate::runs::{self, BatchRuns, CommonTerms};
+use crate::signals::{ProcessSignal, Signals};
 use crate::turn_watch::TurnWatch;
 use crate::{Batch, Judgement, Observer};
 
@@ -34,7 +34,7 @@ impl Robot for Seeded {
     fn exchange(&mut self, _: &u32) -> Result<Sensed, &'static str> {
         self.exchanges += 1;
         if let Some(signals) = self.signals.as_ref().filter(|_| self.seed == 4) {
-            signals.raise(Signal::INTERRUPT);
+            signals.raise(ProcessSignal::INTERRUPT);
         }
         match (self.seed % 9, self.exchanges == self.seed) {
             (6, true) => Err("a wheel came off"),
@@ -95,17 +95,17 @@ impl Several {
             }),
             alone: Box::new(|seed| ["--world", "my floor.toml", "--seed", &seed.to_string()].map(str::to_owned).into()),
         };
-        let runs = Runs::of(batch, |robot| {
+        let runs = BatchRuns::of(batch, |robot| {
             let pilot = PlanAlone::new(&ToyPlan::lab);
             Ok(Box::new(PilotOnRobot::new(robot, Some(|robot| robot), None, Helm::new(pilot, None))))
         });
-        let limits = Limits { timeout: None, turns: Some(100) };
+        let limits = RunLimits { timeout: None, turns: Some(100) };
         let words = ["it"].iter().chain(require).copied();
         let matches = required::argument(Command::new("it")).try_get_matches_from(words).unwrap();
         let required = Required::of(&matches, &ToyPlan::lab()).unwrap();
         let period = Duration::from_millis(100);
         let watch = &TurnWatch::default();
-        let terms = Terms { period, limits, signals, watch, program: r"'./it'\''s'", required: &required };
+        let terms = CommonTerms { period, limits, signals, watch, program: r"'./it'\''s'", required: &required };
         let mut out = Vec::new();
         let (status, unwritten) = runs::run(&runs, &terms, &mut out, None);
         assert!(unwritten.is_none());

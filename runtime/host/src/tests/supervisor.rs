@@ -4,7 +4,7 @@ use mdle_runtime::Cause::Fired;
 use mdle_runtime::Nanos;
 
 use super::toy::{Act, Alone, Makes, Run, Sensed, Stage};
-use crate::{Break, Intervention, LimitedQuantity, Orders, Pace, RunTerms, Supervisor, Time, Verdict};
+use crate::{Break, BreakOrders, Intervention, LimitedQuantity, Pace, RunTerms, Supervisor, Time, Verdict};
 
 /// A supervisor that adds 10 to each input, replaces the input by 0 in one turn, and ends the run at a break.
 #[derive(Default)]
@@ -27,10 +27,10 @@ impl Supervisor<Alone> for Strict {
         (turn == self.turn).then_some(Intervention { verdict, rule: "rule", limited: None })
     }
 
-    fn at_break(&mut self, moment: &mut Break<'_, Alone>) -> Orders {
+    fn at_break(&mut self, moment: &mut Break<'_, Alone>) -> BreakOrders {
         let is_begun = moment.position().is_some();
         assert_eq!((is_begun, moment.t.0), (moment.turns > 0, moment.turns.saturating_sub(1) * 100_000_000));
-        Orders { pace: self.pace.take(), end: self.end == Some(moment.turns) }
+        BreakOrders { pace: self.pace.take(), end: self.end == Some(moment.turns) }
     }
 
     fn take_requests(&mut self) -> Vec<String> {

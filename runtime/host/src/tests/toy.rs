@@ -17,12 +17,12 @@ use crate::executable::PlanOnTarget;
 use crate::instants::Instants;
 use crate::pilot::PlanAlone;
 use crate::session::session;
-use crate::signals::{Signal, Signals};
+use crate::signals::{ProcessSignal, Signals};
 use crate::surroundings::Surroundings;
 use crate::turn_watch::TurnWatch;
 use crate::{
-    Around, Ended, Judgement, Observation, Observer, Pace, PlanPosition, Refusal, RunTerms, StopRequest, Supervision,
-    Supervisor, Target, Time,
+    EnclosingScope, Ended, Judgement, Observation, Observer, Pace, PlanPosition, Refusal, RunTerms, StopRequest,
+    Supervision, Supervisor, Target, Time,
 };
 
 /// An output: for each atom, numbered as written, the cause by which a scope ends while the atom is current.
@@ -35,7 +35,7 @@ impl Output for Sensed {}
 #[derive(Debug, Clone)]
 pub(super) enum Act {
     Senses(Vec<(u32, Cause)>),
-    Hears(Signal),
+    Hears(ProcessSignal),
     Fails(&'static str),
     Panics(&'static str),
 }
@@ -53,7 +53,7 @@ pub(super) struct Stage {
     pub(super) time: Time,
     pub(super) refusal: Option<Refusal>,
     /// Signal that arrives while the robot is being opened, if any.
-    pub(super) interrupted: Option<Signal>,
+    pub(super) interrupted: Option<ProcessSignal>,
     pub(super) stop: Act,
     pub(super) finish: Result<(), String>,
     /// Result of the robot's run, if the run has a goal.
@@ -106,7 +106,7 @@ thread_local! {
 /// A toy robot that waits to be opened.
 struct Ready {
     time: Time,
-    interrupted: Option<Signal>,
+    interrupted: Option<ProcessSignal>,
     toy: Toy,
     refusal: Option<Refusal>,
 }
@@ -309,7 +309,7 @@ impl Observer for Toy {
         let scopes: Vec<String> = standing
             .scopes
             .iter()
-            .map(|Around { name, condition, since }| format!("{name}[{condition}] {}", since.seconds()))
+            .map(|EnclosingScope { name, condition, since }| format!("{name}[{condition}] {}", since.seconds()))
             .collect();
         self.note(format!("{} {} in {}", standing.state, standing.law, scopes.join(" ")));
     }

@@ -19,7 +19,7 @@ pub(crate) struct ByOdometry {
     watch: Option<Watch>,
     plot: Option<WholeFile>,
     record: Option<WholeFile>,
-    trail: Option<Trail>,
+    trail: Option<OdometryTable>,
     /// Data of pictures and of the live view; `None` before the first output.
     drawing: Option<Drawing>,
     touches: bool,
@@ -27,7 +27,7 @@ pub(crate) struct ByOdometry {
 }
 
 /// The table of poses, with a line for each turn.
-struct Trail {
+struct OdometryTable {
     file: WholeFile,
     patience: Patience,
     /// Writer of the lines; `None` before the first output. A slow disk does not make the robot wait.
@@ -48,7 +48,7 @@ impl ByOdometry {
         patience: &Patience,
     ) -> Result<Self, String> {
         let watch = Watch::of(matches, &World::empty())?;
-        let trail = trail.map(|file| Trail { file, patience: patience.clone(), lines: None });
+        let trail = trail.map(|file| OdometryTable { file, patience: patience.clone(), lines: None });
         let setup = format!("robot {robot}, by odometry");
         Ok(Self { setup, watch, plot, record, trail, drawing: None, touches: false, contacts: 0 })
     }
@@ -95,7 +95,7 @@ fn is_finite(pose: &Pose) -> bool {
     [pose.x.0, pose.y.0, pose.theta.0].into_iter().all(f64::is_finite)
 }
 
-impl Trail {
+impl OdometryTable {
     fn went(&mut self, t: Nanos, pose: &Pose) {
         let Self { file, patience, lines } = self;
         let lines = lines.get_or_insert_with(|| {

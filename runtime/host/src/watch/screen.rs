@@ -26,9 +26,9 @@ static SETTINGS: Mutex<Option<SavedSettings>> = Mutex::new(None);
 struct SavedSettings(Option<Termios>);
 
 /// The terminal, opened so that writes never wait, with the unwritten rest of a picture.
-static TERMINAL: Mutex<Option<Terminal>> = Mutex::new(None);
+static TERMINAL: Mutex<Option<TerminalState>> = Mutex::new(None);
 
-struct Terminal {
+struct TerminalState {
     file: File,
     left: Vec<u8>,
 }
@@ -124,17 +124,17 @@ fn restore(settings: Option<Termios>) {
 }
 
 /// Opens the terminal a second time, so that writes do not wait. If that is not permitted, writes may wait.
-fn opened() -> Option<Terminal> {
+fn opened() -> Option<TerminalState> {
     let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
     let file = File::options().write(true).custom_flags(flags).open("/proc/self/fd/1").ok()?;
-    Some(Terminal { file, left: Vec::new() })
+    Some(TerminalState { file, left: Vec::new() })
 }
 
-fn terminal() -> MutexGuard<'static, Option<Terminal>> {
+fn terminal() -> MutexGuard<'static, Option<TerminalState>> {
     TERMINAL.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Terminal {
+impl TerminalState {
     /// Writes as much of the rest as the terminal accepts. Returns `true` if the rest is empty, or if nothing can be
     /// written any more.
     fn push(&mut self) -> bool {

@@ -2,7 +2,7 @@
 
 use mdle_runtime::{Pose, Printable};
 
-use crate::{Around, PlanPosition};
+use crate::{EnclosingScope, PlanPosition};
 
 /// Maximum number of scopes in the view; the outermost and the innermost scopes are most important.
 const SCOPES_MOST: usize = 4;
@@ -17,12 +17,12 @@ pub(super) struct Now {
     pub(super) contacts: u64,
     seconds: f64,
     atom: String,
-    scopes: Vec<Scope>,
+    scopes: Vec<ViewedScope>,
 }
 
 /// A scope in the live view.
 #[derive(Debug, Clone, PartialEq)]
-struct Scope {
+struct ViewedScope {
     title: String,
     seconds: f64,
     /// Time in the scope's `wait`, in seconds, if its condition has a `wait`.
@@ -36,12 +36,12 @@ impl Now {
         let place = if standing.place.is_empty() { String::new() } else { format!("  ({})", standing.place) };
         let since = if standing.since.is_empty() { String::new() } else { format!("  <- {}", standing.since) };
         self.atom = format!("{}{place}{since}", standing.law);
-        self.scopes = standing.scopes.iter().map(Scope::of).collect();
+        self.scopes = standing.scopes.iter().map(ViewedScope::of).collect();
         let middle = 1..self.scopes.len().saturating_sub(SCOPES_MOST - 2).max(1);
         if self.scopes.len() > SCOPES_MOST {
             let title = format!("… {} more …", middle.len());
             let seconds = self.scopes.get(1).map_or(0.0, |scope| scope.seconds);
-            self.scopes.splice(middle, [Scope { title, seconds, wait: None }]);
+            self.scopes.splice(middle, [ViewedScope { title, seconds, wait: None }]);
         }
     }
 
@@ -69,8 +69,8 @@ impl Now {
     }
 }
 
-impl Scope {
-    fn of(around: &Around<'_>) -> Self {
+impl ViewedScope {
+    fn of(around: &EnclosingScope<'_>) -> Self {
         // `null` never fires.
         let condition = if around.condition == "null" { "" } else { around.condition };
         let title = match (around.name, condition) {
@@ -115,7 +115,7 @@ mod tests {
     use mdle_runtime::Nanos;
 
     fn now(scopes: usize) -> Now {
-        let around = |number: usize| Around {
+        let around = |number: usize| EnclosingScope {
             name: if number == 0 {
                 "LabTour"
             } else if number + 1 == scopes {

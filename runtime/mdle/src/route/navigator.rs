@@ -8,8 +8,8 @@ use std::sync::Arc;
 use mdle_compiler::load::{self, LoadedPlan};
 use mdle_engine::{Engine, EngineAlphabet, Library, PlanFacts, StoredPlan};
 use mdle_files::Target;
-use mdle_host::{AfterPlan, Call, Moment, Pilot, PilotFault, RunTerms, Transitions};
-use mdle_record::Change;
+use mdle_host::{AfterPlan, Call, Pilot, PilotFault, PilotTurn, RunTerms, Transitions};
+use mdle_record::RecordedChange;
 use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Pose, Printable, Radians, Robot, Sensed, Turn, Twist};
 
 use super::look::{Heard, LOOK, LandmarkMap, Look, Stand};
@@ -227,7 +227,7 @@ impl<A: EngineAlphabet<Output = Sensed>> Pilot for Navigator<'_, A> {
 
     fn turn(
         &mut self,
-        moment: Moment<'_, Sensed>,
+        moment: PilotTurn<'_, Sensed>,
         transitions: &mut Transitions,
     ) -> Result<Turn<A::Input>, PilotFault> {
         let y = moment.y;
@@ -249,7 +249,7 @@ impl<A: EngineAlphabet<Output = Sensed>> Pilot for Navigator<'_, A> {
         std::mem::replace(&mut self.after, AfterPlan::Ends)
     }
 
-    fn divert(&mut self, plan: LoadedPlan<A>, moment: Moment<'_, Sensed>) {
+    fn divert(&mut self, plan: LoadedPlan<A>, moment: PilotTurn<'_, Sensed>) {
         self.legs.clear();
         self.heard = None;
         self.engine.divert(plan, moment);
@@ -284,7 +284,7 @@ impl<A: EngineAlphabet<Output = Sensed>> Pilot for Navigator<'_, A> {
         self.engine.record();
     }
 
-    fn take_changes(&mut self) -> Vec<Change> {
+    fn take_changes(&mut self) -> Vec<RecordedChange> {
         self.engine.take_changes()
     }
 }

@@ -7,10 +7,10 @@ use mdle_compiler::load::{Loaded, LoadedPlan};
 use mdle_engine::link::{Air, StateLink};
 use mdle_engine::{Engine, Library, Recorder as _};
 use mdle_host::{
-    Microphones, Moment, Pace, Passes, Pilot as _, PilotFault, RobotTurn, RunTerms, StopRequest, Target as _, Time,
+    Microphones, Pace, Passes, Pilot as _, PilotFault, PilotTurn, RobotTurn, RunTerms, StopRequest, Target as _, Time,
     Transitions, cause_words, place,
 };
-use mdle_record::Change;
+use mdle_record::RecordedChange;
 use mdle_runtime::{Machine, Nanos, PathStore, Plan as _, Robot as _, Sensed, Setpoint, StoredPath, Turn, Twist};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{RobotEars, Sim, Simulated};
@@ -69,7 +69,7 @@ pub(super) struct MemberTurn {
     /// Source of the input; `None` if the robot was not driven.
     pub(super) kind: Option<Turn<()>>,
     /// Changes in this turn that a record needs in addition to the robot's output.
-    pub(super) changes: Vec<Change>,
+    pub(super) changes: Vec<RecordedChange>,
 }
 
 impl Runner {
@@ -136,8 +136,8 @@ impl Runner {
     }
 
     /// Returns a turn for the robot's record; `None` if the robot was not driven.
-    pub(super) fn recorded<'t>(&'t self, moment: Moment<'t, Sensed>, made: &MemberTurn) -> Option<RobotTurn<'t>> {
-        let Moment { y, t, number } = moment;
+    pub(super) fn recorded<'t>(&'t self, moment: PilotTurn<'t, Sensed>, made: &MemberTurn) -> Option<RobotTurn<'t>> {
+        let PilotTurn { y, t, number } = moment;
         let plan = self.machine().map(|machine| (machine.plan() as &dyn mdle_host::Texts, machine.state()));
         let (sent, transitions, changes) = (self.input, &self.transitions, made.changes.clone());
         let (kind, plan_number) = (made.kind?, self.engine.plan_number());
@@ -187,7 +187,7 @@ impl Runner {
         self.transitions.clear();
         let mut complete = *y;
         self.engine.complete(&mut complete, t);
-        match self.engine.turn(Moment { y: &complete, t, number }, &mut self.transitions) {
+        match self.engine.turn(PilotTurn { y: &complete, t, number }, &mut self.transitions) {
             Ok(turn) => {
                 made.kind = Some(match turn {
                     Turn::Law(_) => Turn::Law(()),
@@ -206,7 +206,7 @@ impl Runner {
         made.changes = self.engine.take_changes();
         // The path recorded in the previous turn is part of this turn's output.
         let replaced = self.replaced.take();
-        made.changes.extend(replaced.map(|StoredPath { name, setpoints }| Change::Path {
+        made.changes.extend(replaced.map(|StoredPath { name, setpoints }| RecordedChange::Path {
             name: name.to_owned(),
             setpoints: setpoints.to_vec(),
         }));

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use mdle_host::{Clocked, Moment, is_record};
+use mdle_host::{Clocked, PilotTurn, is_record};
 use mdle_runtime::trace::{Json, Seconds};
 use mdle_runtime::{Nanos, Printable, Sensed};
 use mdle_sim::{FleetDrawing, TripDrawing};
@@ -82,7 +82,7 @@ impl Output {
             self.line(t, &runner.name, line);
         }
         if let Some(records) = &mut self.records {
-            let recorded = runner.recorded(Moment { y, t, number }, made);
+            let recorded = runner.recorded(PilotTurn { y, t, number }, made);
             let written = recorded.map_or(Ok(()), |turn| records.turn(&runner.name, turn));
             let written = match &runner.standing {
                 Standing::Drives => written,

@@ -10,7 +10,7 @@ use std::thread;
 use std::time::Instant;
 
 use mdle_engine::Library;
-use mdle_host::Progress;
+use mdle_host::ProgressLine;
 use mdle_runtime::Sensed;
 
 use super::course::Course;
@@ -96,7 +96,7 @@ pub(super) fn run(
         drop((sender, reached));
         let begun = Instant::now();
         let (mut err, is_seen) = (io::stderr(), io::stderr().is_terminal());
-        let mut progress = is_seen.then(|| Progress::new(&mut err, Box::new(move || begun.elapsed())));
+        let mut progress = is_seen.then(|| ProgressLine::new(&mut err, Box::new(move || begun.elapsed())));
         for run in receiver {
             made.push(run);
             if let Some(progress) = &mut progress {

@@ -8,7 +8,7 @@ use std::time::Duration;
 use mdle_compiler::load::{Loaded, LoadedPlan};
 use mdle_engine::{Engine, Library};
 use mdle_host::{
-    Call, Microphones, Moment, Pace, Pilot, PilotFault, Program, RecordedPlan, RunTerms, StopRequest, Time,
+    Call, Microphones, Pace, Pilot, PilotFault, PilotTurn, Program, RecordedPlan, RunTerms, StopRequest, Time,
     Transitions, Trials, cause_words, trials,
 };
 use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Robot as _, Sensed, Turn, Twist};
@@ -184,7 +184,7 @@ impl Driven<'_> {
     fn turn(&mut self, y: Sensed, t: Nanos, number: u64) -> Result<Turn<()>, String> {
         self.transitions.clear();
         let turn =
-            self.engine.turn(Moment { y: &y, t, number }, &mut self.transitions).map_err(|fault| match fault {
+            self.engine.turn(PilotTurn { y: &y, t, number }, &mut self.transitions).map_err(|fault| match fault {
                 PilotFault::Stopped(sentence) => sentence,
                 PilotFault::Panicked(message) => format!("a panic, which is a bug: {message}"),
             })?;

@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use mdle_compiler::load::LoadedPlan;
-use mdle_host::{Moment, Pilot, PilotFault, Transitions};
-use mdle_record::Change;
+use mdle_host::{Pilot, PilotFault, PilotTurn, Transitions};
+use mdle_record::RecordedChange;
 use mdle_runtime::{Machine, Nanos, Output as _, Plan as _, Turn};
 
 use super::Engine;
@@ -33,7 +33,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
 
     fn turn(
         &mut self,
-        Moment { y, t, number }: Moment<'_, A::Output>,
+        PilotTurn { y, t, number }: PilotTurn<'_, A::Output>,
         transitions: &mut Transitions,
     ) -> Result<Turn<A::Input>, PilotFault> {
         let mut complete = y.clone();
@@ -86,7 +86,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         Ok(turn)
     }
 
-    fn divert(&mut self, plan: LoadedPlan<A>, _: Moment<'_, A::Output>) {
+    fn divert(&mut self, plan: LoadedPlan<A>, _: PilotTurn<'_, A::Output>) {
         let was_late = self.plans.is_late();
         self.plans.divert(plan);
         if was_late {
@@ -107,7 +107,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         let goes_on = self.ends_trial(&format!("the safety rule {rule} ends it")).is_ok();
         // A replay detects the end of the trial by itself, and has no requests of other robots.
         if self.plans.bar_peers(ENDED) {
-            self.plans.note(Change::Cancelled);
+            self.plans.note(RecordedChange::Cancelled);
         }
         goes_on
     }
@@ -132,7 +132,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         self.plans.record();
     }
 
-    fn take_changes(&mut self) -> Vec<Change> {
+    fn take_changes(&mut self) -> Vec<RecordedChange> {
         self.history.as_mut().map(History::take).unwrap_or_default()
     }
 }
@@ -148,9 +148,9 @@ impl<A: EngineAlphabet> Engine<A> {
             PlanTurn::Made(turn) => Ok(turn),
             PlanTurn::Late => {
                 let progress = match (is_new, self.plans.is_late()) {
-                    (true, true) => Some(Change::Late),
-                    (true, false) => Some(Change::Skipped),
-                    (false, false) if was_away => Some(Change::Back),
+                    (true, true) => Some(RecordedChange::Late),
+                    (true, false) => Some(RecordedChange::Skipped),
+                    (false, false) if was_away => Some(RecordedChange::Back),
                     // The plan is not back yet, or waits for attributes that it reads.
                     (false, _) => None,
                 };
@@ -194,7 +194,7 @@ impl<A: EngineAlphabet> Engine<A> {
             if self.ends_trial(why).is_err() {
                 return Err(PilotFault::Stopped("the plan has not ended its turn".to_owned()));
             }
-            self.plans.note(Change::RolledBack(why.to_owned()));
+            self.plans.note(RecordedChange::RolledBack(why.to_owned()));
         }
         Ok(())
     }

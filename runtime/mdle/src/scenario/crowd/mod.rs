@@ -12,7 +12,7 @@ use std::io::{self, IsTerminal as _, Write as _};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use mdle_host::{Interruption, Progress};
+use mdle_host::{Interruption, ProgressLine};
 use mdle_runtime::Nanos;
 
 use super::FAULT;
@@ -38,7 +38,7 @@ pub(super) fn run(setup: CrowdSetup, options: &ScenarioOptions) -> Result<ExitCo
     let last = {
         let mut err = io::stderr();
         let is_shown = err.is_terminal();
-        let mut progress = is_shown.then(|| Progress::new(&mut err, Box::new(move || begun.elapsed())));
+        let mut progress = is_shown.then(|| ProgressLine::new(&mut err, Box::new(move || begun.elapsed())));
         let mut t = Nanos::ZERO;
         loop {
             turns.turn(t);
