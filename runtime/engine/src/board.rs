@@ -7,7 +7,7 @@ use mdle_compiler::alphabet::ParameterKind;
 use mdle_runtime::{ModuleRead, Nanos};
 
 use crate::attribute::{AGE, AttributeKind, AttributeName, Reading, Value};
-use crate::module::{About, Declared, Ports, Refusal, Source};
+use crate::module::{About, Declared, Ports, Refusal, ValueSource};
 
 /// All attributes of the loaded modules, in the order in which the modules were loaded.
 #[derive(Debug, Default)]
@@ -116,8 +116,8 @@ impl Board {
     /// # Errors
     /// Fails if the module expects another kind than an attribute has.
     pub(crate) fn wires(&self, reader: &str, declared: &Declared) -> Result<Wires, Refusal> {
-        let wire = |source: &Source| {
-            let Source::Attribute(name, read) = source else { return Ok(None) };
+        let wire = |source: &ValueSource| {
+            let ValueSource::Attribute(name, read) = source else { return Ok(None) };
             let Some(place) = self.place(&name.module, &name.attribute) else { return Ok(None) };
             match self.posts.get(place).map(|post| post.about.kind) {
                 Some(published) if published != *read => {
@@ -168,8 +168,8 @@ impl Board {
     pub(crate) fn hand(&self, declared: &Declared, wires: &[Option<usize>], ports: &mut Ports) {
         for ((source, wire), copy) in declared.reads.iter().zip(wires).zip(&mut ports.ins) {
             let reading = match source {
-                Source::Setting(_, reading) => Some(reading),
-                Source::Attribute(..) => wire.and_then(|place| self.posts.get(place)?.reading.as_ref()),
+                ValueSource::Setting(_, reading) => Some(reading),
+                ValueSource::Attribute(..) => wire.and_then(|place| self.posts.get(place)?.reading.as_ref()),
             };
             if copy.as_ref() != reading {
                 *copy = reading.cloned();

@@ -19,11 +19,11 @@ mod start;
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests;
 
-pub use conditions::{Conditions, GuardError, Watched};
+pub use conditions::{Conditions, GuardError, WatchedConditions};
 pub use envelope::Envelope;
 pub use error::RulesError;
 pub use fence::Fence;
 pub use guardian::Guardian;
 pub use read::read;
 pub use rule_id::RuleId;
-pub use rules::{Condition, Guard, Limits, Measure, PlanEntry, Rules, Then};
+pub use rules::{ConditionText, Guard, Limits, Measure, PlanEntry, Rules, Then};

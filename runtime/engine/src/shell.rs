@@ -15,5 +15,5 @@ mod recorder;
 mod session;
 
 pub use converse::{Conversation, converse};
-pub use lines::{Input, Lines, PrintAbove, Terminal, Typed};
+pub use lines::{FileLines, Lines, PrintAbove, TerminalLines, Typed};
 pub use session::Session;

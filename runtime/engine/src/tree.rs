@@ -18,7 +18,7 @@ mod watch;
 
 pub use desk::{Desk, Reply, Served};
 pub use hub::{Hub, QUEUE};
-pub use node::{Access, Kind, Node, Role, Tree};
+pub use node::{Access, Node, Role, Tree, ValueKind};
 pub(crate) use proposal::listed;
 pub use request::{Answer, Change, Operation, Request};
 pub use value::{Value, read};

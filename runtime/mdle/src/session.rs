@@ -10,7 +10,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread::Builder;
 use std::time::Duration;
 
-use mdle_engine::shell::{Conversation, Input, Lines, converse};
+use mdle_engine::shell::{Conversation, FileLines, Lines, converse};
 use mdle_engine::tree::{Desk, Hub};
 
 use crate::arguments::SessionOptions;
@@ -90,9 +90,9 @@ fn front_end(
     let (sender, outcome) = channel();
     let talk = move || {
         let mut lines: Box<dyn Lines> = match (file, printing.map(|printing| printing.begin(&hub))) {
-            (Some(file), _) => Box::new(Input::new(BufReader::new(file))),
+            (Some(file), _) => Box::new(FileLines::new(BufReader::new(file))),
             (None, Some(Ok(terminal))) => Box::new(terminal),
-            (None, Some(Err(_)) | None) => Box::new(Input::new(BufReader::new(io::stdin()))),
+            (None, Some(Err(_)) | None) => Box::new(FileLines::new(BufReader::new(io::stdin()))),
         };
         let is_well = converse(&hub, &conversation, &mut *lines, &mut io::stdout(), &mut io::stderr());
         let _ = sender.send(is_well);

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
-use mdle_engine::shell::{PrintAbove, Terminal};
+use mdle_engine::shell::{PrintAbove, TerminalLines};
 use mdle_engine::tree::Hub;
 use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
 
@@ -71,8 +71,8 @@ impl Printing {
     /// # Errors
     /// Fails if the terminal cannot be used, or if the system cannot create the threads; reports of the run are printed
     /// nevertheless.
-    pub(crate) fn begin(self, hub: &Hub) -> io::Result<Terminal> {
-        let (terminal, print): (_, Box<PrintAbove>) = match Terminal::open(hub.clone()) {
+    pub(crate) fn begin(self, hub: &Hub) -> io::Result<TerminalLines> {
+        let (terminal, print): (_, Box<PrintAbove>) = match TerminalLines::open(hub.clone()) {
             Ok((terminal, print)) => (Ok(terminal), print),
             Err(error) => (Err(error), Box::new(|text: &str| io::stderr().write_all(text.as_bytes()))),
         };

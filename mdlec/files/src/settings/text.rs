@@ -106,21 +106,21 @@ pub(super) fn read(text: &str) -> Result<SettingsText, SettingsError> {
 }
 
 /// Returns the entries of a table in the order of their lines.
-fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t Key<'i>, &'t Spanned<DeValue<'i>>)> {
+fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t TomlKey<'i>, &'t Spanned<DeValue<'i>>)> {
     let mut entries: Vec<_> = table.iter().collect();
     entries.sort_by_key(|(key, _)| key.span().start);
     entries
 }
 
 /// A key as TOML represents it.
-type Key<'i> = Spanned<std::borrow::Cow<'i, str>>;
+type TomlKey<'i> = Spanned<std::borrow::Cow<'i, str>>;
 
 /// Reader of the text of an `mdle.toml`.
 struct SettingsReader<'t>(&'t str);
 
 impl SettingsReader<'_> {
     /// Reads a value that must be text; `example` is a valid entry for the error message.
-    fn text(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>, example: &str) -> Result<Setting, SettingsError> {
+    fn text(&self, key: &TomlKey<'_>, value: &Spanned<DeValue<'_>>, example: &str) -> Result<Setting, SettingsError> {
         let found = value.get_ref();
         match found.as_str() {
             Some(text) if !text.contains('\0') => Ok(Setting { line: self.line(&key.span()), value: text.to_owned() }),
@@ -132,7 +132,11 @@ impl SettingsReader<'_> {
     }
 
     /// Reads the entries of `[modules]`.
-    fn modules(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>) -> Result<Vec<(String, Setting)>, SettingsError> {
+    fn modules(
+        &self,
+        key: &TomlKey<'_>,
+        value: &Spanned<DeValue<'_>>,
+    ) -> Result<Vec<(String, Setting)>, SettingsError> {
         let example = "ears = \"python3 ears.py\"";
         let Some(table) = value.get_ref().as_table() else {
             let found = kind(value.get_ref());
@@ -140,12 +144,12 @@ impl SettingsReader<'_> {
             return Err(self.error(key, message));
         };
         let module =
-            |(key, value): (&Key<'_>, _)| Ok((key.get_ref().clone().into_owned(), self.text(key, value, example)?));
+            |(key, value): (&TomlKey<'_>, _)| Ok((key.get_ref().clone().into_owned(), self.text(key, value, example)?));
         in_order(table).into_iter().map(module).collect()
     }
 
     /// Reads the entries of `[options]`.
-    fn options(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>) -> Result<Vec<OptionText>, SettingsError> {
+    fn options(&self, key: &TomlKey<'_>, value: &Spanned<DeValue<'_>>) -> Result<Vec<OptionText>, SettingsError> {
         let Some(table) = value.get_ref().as_table() else {
             let found = kind(value.get_ref());
             let message =
@@ -155,7 +159,7 @@ impl SettingsReader<'_> {
         in_order(table).into_iter().map(|(key, value)| self.option(key, value)).collect()
     }
 
-    fn option(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>) -> Result<OptionText, SettingsError> {
+    fn option(&self, key: &TomlKey<'_>, value: &Spanned<DeValue<'_>>) -> Result<OptionText, SettingsError> {
         let name = &**key.get_ref();
         if KEYS.contains(&name) {
             return Err(self.error(key, format!("`{name}` is no option: write it above `[options]`")));

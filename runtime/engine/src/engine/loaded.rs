@@ -9,13 +9,13 @@ use crate::fork::{Seat, Task};
 use crate::module::{Candidate, Declared, Form, Ports, Relevance, ThreadGate};
 
 /// A loaded module.
-pub(crate) struct Loaded<Y> {
+pub(crate) struct LoadedModule<Y> {
     pub(crate) name: Arc<str>,
     pub(crate) declared: Declared,
     /// Position of the module's first attribute on the board.
     pub(crate) first: usize,
     pub(crate) wires: Wires,
-    pub(crate) runs: Runs<Y>,
+    pub(crate) runs: ModuleCode<Y>,
     pub(crate) state: ModuleState,
     /// `true` while a user has stopped the module.
     pub(crate) is_held: bool,
@@ -26,15 +26,15 @@ pub(crate) struct Loaded<Y> {
 }
 
 /// Code of a loaded module, and the thread that runs it.
-pub(crate) enum Runs<Y> {
+pub(crate) enum ModuleCode<Y> {
     /// A module that makes turns, with its seat among the modules of a turn.
     InTurns(Arc<Seat<Y>>),
     /// A background module, with its own thread.
-    InBackground(Visit),
+    InBackground(ExchangeState),
 }
 
 /// State of a background module's exchange of values with the turn breaks.
-pub(crate) struct Visit {
+pub(crate) struct ExchangeState {
     pub(crate) gate: ThreadGate,
     /// Time at which the module's next exchange is due, in stepped time.
     pub(crate) due: Nanos,
@@ -70,14 +70,14 @@ impl ModuleState {
     }
 }
 
-impl<Y> Loaded<Y> {
+impl<Y> LoadedModule<Y> {
     /// Returns a module that is loaded at `now`. If `lives` is `true`, the thread of a background module starts to run;
     /// in a replay, it never runs.
     pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
         let Candidate { name, declared, form } = candidate;
         let (runs, state) = match form {
             Form::Registered(module, ports) => {
-                (Runs::InTurns(Seat::new(Arc::clone(&name), module, ports)), ModuleState::Stopped)
+                (ModuleCode::InTurns(Seat::new(Arc::clone(&name), module, ports)), ModuleState::Stopped)
             }
             Form::Background(gate) => {
                 if lives {
@@ -85,7 +85,7 @@ impl<Y> Loaded<Y> {
                 }
                 let latency = if declared.begins_at_once { Nanos::ZERO } else { declared.latency };
                 let due = Nanos(now.0.saturating_add(latency.0));
-                (Runs::InBackground(Visit { gate, due, ports: None }), ModuleState::Stopped)
+                (ModuleCode::InBackground(ExchangeState { gate, due, ports: None }), ModuleState::Stopped)
             }
         };
         Self {
@@ -104,8 +104,8 @@ impl<Y> Loaded<Y> {
     /// Returns the seat of a registered module; `None` for a background module.
     pub(crate) fn seat(&self) -> Option<&Arc<Seat<Y>>> {
         match &self.runs {
-            Runs::InTurns(seat) => Some(seat),
-            Runs::InBackground(_) => None,
+            ModuleCode::InTurns(seat) => Some(seat),
+            ModuleCode::InBackground(_) => None,
         }
     }
 

@@ -9,12 +9,12 @@ use mdle_runtime::{ModuleRead, Nanos};
 
 use super::event::{Arrivals, Event};
 use super::janitor::Janitor;
-use super::loaded::{Loaded, ModuleState, Runs};
+use super::loaded::{LoadedModule, ModuleCode, ModuleState};
 use super::unpublished::unpublished;
 use crate::attribute::{AttributeName, Reading, Value};
 use crate::board::Board;
 use crate::fork::{Fork, Threads};
-use crate::module::{About, Candidate, PLAN, ROBOT, Refusal, Source};
+use crate::module::{About, Candidate, PLAN, ROBOT, Refusal, ValueSource};
 
 /// Rule that decides when a background module is served.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +33,7 @@ pub enum Service {
 pub struct Modules<Y> {
     pub(super) board: Board,
     /// Loaded modules in the order in which they were loaded. Every turn break uses this order.
-    pub(super) loaded: Vec<Loaded<Y>>,
+    pub(super) loaded: Vec<LoadedModule<Y>>,
     /// Order in which threads take the modules.
     pub(super) order: Vec<usize>,
     pub(super) fork: Fork<Y>,
@@ -144,12 +144,12 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     pub fn reads(&self, name: &str) -> impl Iterator<Item = &AttributeName> {
         let sources = self.module(name).into_iter().flat_map(|module| &module.declared.reads);
         sources.filter_map(|source| match source {
-            Source::Attribute(attribute, _) => Some(attribute),
-            Source::Setting(..) => None,
+            ValueSource::Attribute(attribute, _) => Some(attribute),
+            ValueSource::Setting(..) => None,
         })
     }
 
-    fn module(&self, name: &str) -> Option<&Loaded<Y>> {
+    fn module(&self, name: &str) -> Option<&LoadedModule<Y>> {
         self.loaded.iter().find(|module| &*module.name == name)
     }
 
@@ -175,7 +175,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
             self.board.remove(&name);
             return Err(refusal);
         }
-        self.loaded.push(Loaded::new(candidate, self.turn.1, self.replayed.is_none()));
+        self.loaded.push(LoadedModule::new(candidate, self.turn.1, self.replayed.is_none()));
         self.rewire();
         self.events.push(Event::Loaded(name));
         Ok(())
@@ -183,7 +183,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
 
     /// Returns each loaded module that reads unpublished attributes: its name, and a sentence about these attributes.
     pub(super) fn unpublished(&self) -> impl Iterator<Item = (&str, String)> {
-        let sentence = |module: &Loaded<Y>| unpublished(&module.name, &module.declared, &self.board);
+        let sentence = |module: &LoadedModule<Y>| unpublished(&module.name, &module.declared, &self.board);
         self.loaded.iter().filter_map(move |module| Some((&*module.name, sentence(module)?)))
     }
 
@@ -234,7 +234,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         number.ok_or_else(|| Refusal::Unknown(name.to_owned()))
     }
 
-    pub(super) fn rewired(&self, module: &Loaded<Y>) -> Result<crate::board::Wires, Refusal> {
+    pub(super) fn rewired(&self, module: &LoadedModule<Y>) -> Result<crate::board::Wires, Refusal> {
         self.board.wires(&module.name, &module.declared)
     }
 
@@ -255,7 +255,7 @@ impl<Y> Drop for Modules<Y> {
     /// Asks the threads of all background modules to end. The modules are then dropped, which waits for each thread.
     fn drop(&mut self) {
         for module in &self.loaded {
-            if let Runs::InBackground(visit) = &module.runs {
+            if let ModuleCode::InBackground(visit) = &module.runs {
                 visit.gate.stop();
             }
         }

@@ -1,13 +1,13 @@
 //! Determines the relevant modules: modules that are always relevant, modules that the plan reads, and all modules that
 //! relevant modules read.
 
-use super::loaded::Loaded;
+use super::loaded::LoadedModule;
 
 /// Returns, for each module, `true` if it is relevant. `plan` yields the board positions of the attributes that the
 /// plan reads.
-pub(crate) fn relevant<Y>(modules: &[Loaded<Y>], plan: impl Iterator<Item = usize>) -> Vec<bool> {
+pub(crate) fn relevant<Y>(modules: &[LoadedModule<Y>], plan: impl Iterator<Item = usize>) -> Vec<bool> {
     let owner = |place: usize| {
-        let count = |module: &Loaded<Y>| module.declared.publishes.len();
+        let count = |module: &LoadedModule<Y>| module.declared.publishes.len();
         modules.iter().position(|module| (module.first..module.first + count(module)).contains(&place))
     };
     let mut relevant = vec![false; modules.len()];

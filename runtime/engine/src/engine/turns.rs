@@ -6,10 +6,10 @@ use std::time::{Duration, Instant};
 use mdle_runtime::{ModuleRead, Nanos};
 
 use super::event::{Arrivals, End, Event};
-use super::loaded::{Loaded, ModuleState, Runs};
+use super::loaded::{LoadedModule, ModuleCode, ModuleState};
 use super::modules::{Modules, Service};
 use super::relevance::relevant;
-use crate::fork::{Progress, Task};
+use crate::fork::{Task, TurnProgress};
 use crate::module::{Fault, ThreadEnd};
 
 /// Number of turns after which a late module is given up, if [`PATIENCE`] has passed as well.
@@ -33,7 +33,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         let recorded = replayed.as_ref().and_then(|arrivals| arrivals.front());
         let was_skipped = |name: &Arc<str>| recorded.is_some_and(|arrivals| arrivals.skipped.contains(name));
         let modules = order.iter().filter_map(|number| loaded.get(*number));
-        let seats = modules.filter(|module| !was_skipped(&module.name)).filter_map(Loaded::queued);
+        let seats = modules.filter(|module| !was_skipped(&module.name)).filter_map(LoadedModule::queued);
         fork.turn(y, number, now, seats, deadline);
     }
 
@@ -70,13 +70,13 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         for module in &mut self.loaded {
             let (declared, wires) = (&module.declared, &module.wires);
             match &mut module.runs {
-                Runs::InTurns(seat) if module.state == ModuleState::Active => {
+                ModuleCode::InTurns(seat) if module.state == ModuleState::Active => {
                     if let Some(mut occupant) = seat.occupant() {
                         self.board.hand(declared, wires, &mut occupant.ports);
                     }
                 }
-                Runs::InTurns(_) => {}
-                Runs::InBackground(visit) => {
+                ModuleCode::InTurns(_) => {}
+                ModuleCode::InBackground(visit) => {
                     if let Some(mut ports) = visit.ports.take() {
                         self.board.hand(declared, wires, &mut ports);
                         ports.now = self.turn.1;
@@ -117,7 +117,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         let key = |number: &usize| {
             let module = loaded.get(*number);
             let priority = module.map_or(0, |module| module.declared.priority);
-            let cost = module.and_then(Loaded::seat).map_or(Duration::ZERO, |seat| seat.cost());
+            let cost = module.and_then(LoadedModule::seat).map_or(Duration::ZERO, |seat| seat.cost());
             (std::cmp::Reverse((priority, cost)), *number)
         };
         order.sort_unstable_by_key(key);
@@ -127,7 +127,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     fn settle_registered(&mut self, number: usize) {
         let Self { board, loaded, events, arrivals, replayed, turn, .. } = self;
         let Some(module) = loaded.get_mut(number) else { return };
-        let Runs::InTurns(seat) = &module.runs else { return };
+        let ModuleCode::InTurns(seat) = &module.runs else { return };
         if module.state.is_final() {
             return;
         }
@@ -135,10 +135,10 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
             Some(_) => arrivals.progress(&module.name),
             None => seat.progress(),
         };
-        let Loaded { name, state, late_turns, fault, .. } = module;
+        let LoadedModule { name, state, late_turns, fault, .. } = module;
         match progress {
-            Progress::Skipped if replayed.is_none() => arrivals.skipped.push(Arc::clone(name)),
-            Progress::Late => {
+            TurnProgress::Skipped if replayed.is_none() => arrivals.skipped.push(Arc::clone(name)),
+            TurnProgress::Late => {
                 if replayed.is_none() {
                     arrivals.late.push(Arc::clone(name));
                 }
@@ -147,9 +147,9 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
                 let is_new = |event: &Event| *late_turns == 1 || !matches!(event, Event::Late(_));
                 events.extend(state.is_late(name, *turn).filter(is_new));
             }
-            Progress::Done | Progress::Queued | Progress::Running | Progress::Skipped => {}
+            TurnProgress::Done | TurnProgress::Queued | TurnProgress::Running | TurnProgress::Skipped => {}
         }
-        if progress != Progress::Done {
+        if progress != TurnProgress::Done {
             return;
         }
         let Some(mut occupant) = seat.occupant() else { return };
@@ -176,7 +176,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         let Self { board, loaded, events, arrivals, service, turn, .. } = self;
         let Some(module) = loaded.get_mut(number) else { return };
         let patience = module.patience();
-        let Runs::InBackground(visit) = &mut module.runs else { return };
+        let ModuleCode::InBackground(visit) = &mut module.runs else { return };
         if module.state != ModuleState::Active || *service == Service::WhenDue && turn.1 < visit.due {
             return;
         }
@@ -215,11 +215,11 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
 
 impl Arrivals {
     /// Returns the progress of a module at this turn break of the recorded run.
-    fn progress(&self, name: &Arc<str>) -> Progress {
+    fn progress(&self, name: &Arc<str>) -> TurnProgress {
         match (self.late.contains(name), self.skipped.contains(name)) {
-            (true, _) => Progress::Late,
-            (false, true) => Progress::Skipped,
-            (false, false) => Progress::Done,
+            (true, _) => TurnProgress::Late,
+            (false, true) => TurnProgress::Skipped,
+            (false, false) => TurnProgress::Done,
         }
     }
 }
@@ -240,7 +240,7 @@ impl ModuleState {
     }
 }
 
-impl<Y> Loaded<Y> {
+impl<Y> LoadedModule<Y> {
     /// Starts or stops a module; returns the event, or `None` if nothing has changed.
     fn becomes(&mut self, is_wanted: bool) -> Option<Event> {
         let mut occupant = self.seat().and_then(|seat| seat.occupant());

@@ -4,15 +4,15 @@ use mdle_compiler::alphabet::nearest;
 
 use crate::attribute::AttributeName;
 use crate::board::Board;
-use crate::module::{Declared, Source};
+use crate::module::{Declared, ValueSource};
 use crate::tree::listed;
 
 /// Returns a sentence about the attributes that a module reads but no loaded module publishes; `None` if there are no
 /// such attributes.
 pub(super) fn unpublished(reader: &str, declared: &Declared, board: &Board) -> Option<String> {
     let names = declared.reads.iter().filter_map(|source| match source {
-        Source::Attribute(name, _) => Some(name),
-        Source::Setting(..) => None,
+        ValueSource::Attribute(name, _) => Some(name),
+        ValueSource::Setting(..) => None,
     });
     let names: Vec<_> = names.filter(|name| board.place(&name.module, &name.attribute).is_none()).collect();
     let paths: Vec<_> = names.iter().map(ToString::to_string).collect();

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use mdle_runtime::Nanos;
 use rustix::thread::futex;
 use rustix::time::Timespec;
-pub(crate) use seat::{Progress, Seat, Task};
+pub(crate) use seat::{Seat, Task, TurnProgress};
 
 /// Maximum expected duration of a round that a single worker runs. Waking a second worker would take longer.
 const SMALL: Duration = Duration::from_micros(50);
@@ -55,7 +55,7 @@ struct Round<Y> {
 
 /// The workers, and the data that they share with the control thread.
 struct Crew<Y> {
-    call: Arc<Call<Y>>,
+    call: Arc<RoundExchange<Y>>,
     workers: usize,
     /// `true` if the machine has several cores, so that workers and control thread can run at the same time.
     is_parallel: bool,
@@ -63,7 +63,7 @@ struct Crew<Y> {
 }
 
 /// Data through which the control thread passes rounds to the workers.
-struct Call<Y> {
+struct RoundExchange<Y> {
     round: Mutex<Option<Arc<Round<Y>>>>,
     /// Number of rounds so far; workers wait until it changes.
     epoch: AtomicU32,
@@ -197,7 +197,7 @@ impl<Y> Round<Y> {
 
 impl<Y: Send + Sync + 'static> Crew<Y> {
     fn new(workers: usize, prepare: fn()) -> io::Result<Self> {
-        let call = Call { round: Mutex::default(), epoch: AtomicU32::new(0), quit: AtomicBool::new(false) };
+        let call = RoundExchange { round: Mutex::default(), epoch: AtomicU32::new(0), quit: AtomicBool::new(false) };
         let is_parallel = thread::available_parallelism().is_ok_and(|cores| cores.get() > 1);
         let crew = Self { call: Arc::new(call), workers, is_parallel, prepare };
         (0..workers).try_for_each(|_| crew.hire())?;
@@ -242,7 +242,7 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
     }
 }
 
-impl<Y> Call<Y> {
+impl<Y> RoundExchange<Y> {
     /// Runs rounds on a worker until the workers have to end or this worker has been replaced.
     fn answer(&self, mut seen: u32) {
         loop {

@@ -44,7 +44,7 @@ pub(crate) enum Task {
 
 /// Progress of a module's turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Progress {
+pub(crate) enum TurnProgress {
     /// The module has no task, or has finished it.
     Done,
     /// No thread has taken the module yet.
@@ -57,19 +57,19 @@ pub(crate) enum Progress {
     Skipped,
 }
 
-const PROGRESS: [Progress; 5] =
-    [Progress::Done, Progress::Queued, Progress::Running, Progress::Late, Progress::Skipped];
+const PROGRESS: [TurnProgress; 5] =
+    [TurnProgress::Done, TurnProgress::Queued, TurnProgress::Running, TurnProgress::Late, TurnProgress::Skipped];
 
 impl<Y> Seat<Y> {
     pub(crate) fn new(name: Arc<str>, module: Box<dyn Module<Y>>, ports: Ports) -> Arc<Self> {
         let occupant = Occupant { module, ports, task: Task::Start, fault: None };
-        let (progress, cost) = (AtomicU8::new(Progress::Done as u8), AtomicU64::new(0));
+        let (progress, cost) = (AtomicU8::new(TurnProgress::Done as u8), AtomicU64::new(0));
         Arc::new(Self { name, progress, cost, occupant: Mutex::new(occupant) })
     }
 
     /// Returns the progress of the last turn.
-    pub(crate) fn progress(&self) -> Progress {
-        PROGRESS.get(usize::from(self.progress.load(Ordering::Acquire))).copied().unwrap_or(Progress::Done)
+    pub(crate) fn progress(&self) -> TurnProgress {
+        PROGRESS.get(usize::from(self.progress.load(Ordering::Acquire))).copied().unwrap_or(TurnProgress::Done)
     }
 
     /// Returns the mean time of a turn; zero before the first turn.
@@ -79,13 +79,14 @@ impl<Y> Seat<Y> {
 
     /// Queues the module for a round.
     pub(crate) fn queue(&self) {
-        self.progress.store(Progress::Queued as u8, Ordering::Release);
+        self.progress.store(TurnProgress::Queued as u8, Ordering::Release);
     }
 
     /// Ends the round for the module at the deadline: no thread may start it any more. Returns `true` if a thread is
     /// running the module, which is then late.
     pub(crate) fn cut(&self) -> bool {
-        !self.moved(Progress::Queued, Progress::Skipped) && self.moved(Progress::Running, Progress::Late)
+        !self.moved(TurnProgress::Queued, TurnProgress::Skipped)
+            && self.moved(TurnProgress::Running, TurnProgress::Late)
     }
 
     /// Locks the module between rounds; `None` if a thread is still running it.
@@ -99,7 +100,7 @@ impl<Y> Seat<Y> {
 
     /// Runs the module if no other thread has taken it; returns `true` if the module was late.
     pub(crate) fn run(&self, y: &Y, number: u64, now: Nanos) -> bool {
-        if !self.moved(Progress::Queued, Progress::Running) {
+        if !self.moved(TurnProgress::Queued, TurnProgress::Running) {
             return false;
         }
         let mut occupant = self.occupant.lock().unwrap_or_else(PoisonError::into_inner);
@@ -110,10 +111,10 @@ impl<Y> Seat<Y> {
         drop(occupant);
         let cost = (self.cost().saturating_mul(7).saturating_add(begun.elapsed())) / 8;
         self.cost.store(u64::try_from(cost.as_nanos()).unwrap_or(u64::MAX), Ordering::Relaxed);
-        self.progress.swap(Progress::Done as u8, Ordering::AcqRel) == Progress::Late as u8
+        self.progress.swap(TurnProgress::Done as u8, Ordering::AcqRel) == TurnProgress::Late as u8
     }
 
-    fn moved(&self, from: Progress, to: Progress) -> bool {
+    fn moved(&self, from: TurnProgress, to: TurnProgress) -> bool {
         self.progress.compare_exchange(from as u8, to as u8, Ordering::AcqRel, Ordering::Acquire).is_ok()
     }
 }

@@ -17,9 +17,9 @@ pub(super) fn put_name(to: &mut Vec<u8>, name: &str) {
 }
 
 /// Bytes of a frame, read from front to back.
-pub(super) struct Bytes<'b>(&'b [u8]);
+pub(super) struct UnreadBytes<'b>(&'b [u8]);
 
-impl<'b> Bytes<'b> {
+impl<'b> UnreadBytes<'b> {
     pub(super) fn of(bytes: &'b [u8]) -> Self {
         Self(bytes)
     }

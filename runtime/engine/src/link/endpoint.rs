@@ -12,12 +12,12 @@ use std::time::Instant;
 use mdle_runtime::{Nanos, Printable};
 
 use super::bytes::NAME;
-use super::frame::{Draft, Key, Refused, Times, VERSION};
+use super::frame::{FrameDraft, RefusedFrame, SharedKey, StateTimes, VERSION};
 use super::fresh_states::FreshStates;
 use super::letter_frame::is_letter;
 use super::letters::Letters;
 use super::refusals::Refusals;
-use super::source::Source;
+use super::source::FrameSource;
 use super::state_frame::{self, LONGEST, has_fitting_name};
 use super::{Letter, Posted, RefusedPlan, State, clock, lock};
 
@@ -44,7 +44,7 @@ pub struct Endpoint {
     begun: Nanos,
     /// Names of the robots from which states are accepted.
     peers: Vec<String>,
-    key: Key,
+    key: SharedKey,
     states: Mutex<FreshStates>,
     letters: Letters,
     messages: Mutex<Vec<String>>,
@@ -64,7 +64,7 @@ impl Endpoint {
             session,
             begun: clock::now(),
             peers: peers.clone(),
-            key: Key::of(key),
+            key: SharedKey::of(key),
             states: Mutex::default(),
             letters: Letters::new(name, session, plans),
             messages: Mutex::default(),
@@ -87,11 +87,11 @@ impl Endpoint {
 
     /// Returns the draft of this robot's state. Attributes whose names are too long are omitted.
     #[must_use]
-    pub fn state(&self, state: &State) -> Draft {
+    pub fn state(&self, state: &State) -> FrameDraft {
         for shared in state.attributes.iter().filter(|shared| !has_fitting_name(shared)) {
             self.refuse(&shared.name.to_string(), &format!("a name that is shared has at most {NAME} bytes"));
         }
-        let times = Times { begun: self.begun, measured: clock::now() };
+        let times = StateTimes { begun: self.begun, measured: clock::now() };
         state_frame::written(state, times, &self.key)
     }
 
@@ -132,11 +132,11 @@ impl Endpoint {
     /// # Errors
     /// Returns the end of a sentence if the source must be closed, because it sends anything other than states and
     /// letters of one peer, or too many of them.
-    pub fn take(&self, source: &mut Source, frame: &[u8]) -> Result<(), String> {
+    pub fn take(&self, source: &mut FrameSource, frame: &[u8]) -> Result<(), String> {
         let now = clock::now();
         if is_letter(frame) {
             source.count_letter(Instant::now())?;
-            let Source { challenge, robot, lag, .. } = source;
+            let FrameSource { challenge, robot, lag, .. } = source;
             let robot = robot.as_deref().ok_or_else(|| "it sends a letter before its state".to_owned())?;
             let session = lock(&self.states).session(robot);
             let late = |sent| lag.of(sent, self.time(now));
@@ -150,10 +150,10 @@ impl Endpoint {
             return Err("it sends no states".to_owned());
         }
         let read = state_frame::read(frame, &self.key, &source.challenge).map_err(|refused| match refused {
-            Refused::Garbage => "it sends no states".to_owned(),
-            Refused::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
-            Refused::Key => "it has another key, or repeats what was recorded".to_owned(),
-            Refused::Impossible => "its pose or velocity is one that no robot has".to_owned(),
+            RefusedFrame::Garbage => "it sends no states".to_owned(),
+            RefusedFrame::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
+            RefusedFrame::Key => "it has another key, or repeats what was recorded".to_owned(),
+            RefusedFrame::Impossible => "its pose or velocity is one that no robot has".to_owned(),
         })?;
         let (state, written) = read;
         if !self.peers.contains(&state.name) {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use mdle_runtime::Nanos;
 use rustix::rand::{GetRandomFlags, getrandom};
 
-use super::bytes::Bytes;
+use super::bytes::UnreadBytes;
 use super::clock;
 
 /// Version of the frame format.
@@ -21,9 +21,9 @@ const HEAD: usize = 4 + 1 + 4 + 32;
 
 /// A key that several robots share.
 #[derive(Clone)]
-pub(super) struct Key([u8; 32]);
+pub(super) struct SharedKey([u8; 32]);
 
-impl Key {
+impl SharedKey {
     /// Returns the key for states, which all robots of a link share.
     pub(super) fn of(text: &str) -> Self {
         Self(blake3::derive_key("mdle state link 1", text.as_bytes()))
@@ -76,22 +76,22 @@ impl Challenge {
     ///
     /// # Errors
     /// Fails if the bytes are not a greeting of this version.
-    pub(super) fn of_greeting(greeting: &[u8; GREETING_LENGTH]) -> Result<Self, Refused> {
-        let mut bytes = Bytes::of(greeting);
+    pub(super) fn of_greeting(greeting: &[u8; GREETING_LENGTH]) -> Result<Self, RefusedFrame> {
+        let mut bytes = UnreadBytes::of(greeting);
         if bytes.take() != Some(GREETING) {
-            return Err(Refused::Garbage);
+            return Err(RefusedFrame::Garbage);
         }
         match bytes.take::<1>() {
-            Some([VERSION]) => bytes.take().map(Self).ok_or(Refused::Garbage),
-            Some([other]) => Err(Refused::Version(other)),
-            None => Err(Refused::Garbage),
+            Some([VERSION]) => bytes.take().map(Self).ok_or(RefusedFrame::Garbage),
+            Some([other]) => Err(RefusedFrame::Version(other)),
+            None => Err(RefusedFrame::Garbage),
         }
     }
 }
 
 /// Reason why a frame is refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Refused {
+pub(super) enum RefusedFrame {
     /// The bytes are not a frame, or were damaged during transmission.
     Garbage,
     /// The frame has a different version; contains its version.
@@ -104,24 +104,24 @@ pub(super) enum Refused {
 
 /// A frame without the parts that are computed for each connection: the proof, and the times of a state.
 #[derive(Clone)]
-pub struct Draft {
+pub struct FrameDraft {
     magic: [u8; 4],
     /// Times of a state, with which the body begins; `None` for any other frame.
-    times: Option<Times>,
+    times: Option<StateTimes>,
     body: Arc<[u8]>,
-    key: Key,
+    key: SharedKey,
 }
 
 /// Timestamps of a state on the clock of its robot.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Times {
+pub(super) struct StateTimes {
     /// Start time of the robot's session.
     pub(super) begun: Nanos,
     /// Time at which the state was measured.
     pub(super) measured: Nanos,
 }
 
-impl Times {
+impl StateTimes {
     /// Returns the times that a frame written at `now` contains: the time since the start of the session, and the age
     /// of the state.
     fn at(self, now: Nanos) -> [Nanos; 2] {
@@ -129,10 +129,10 @@ impl Times {
     }
 }
 
-impl Draft {
+impl FrameDraft {
     /// Returns the draft of a frame with this magic number. `times` are the times of a state; `None` for any other
     /// frame.
-    pub(super) fn new(magic: [u8; 4], times: Option<Times>, body: Vec<u8>, key: &Key) -> Self {
+    pub(super) fn new(magic: [u8; 4], times: Option<StateTimes>, body: Vec<u8>, key: &SharedKey) -> Self {
         Self { magic, times, body: body.into(), key: key.clone() }
     }
 
@@ -176,25 +176,25 @@ fn checksum(body: &[u8]) -> [u8; 4] {
 pub(super) fn opened<'b>(
     magic: [u8; 4],
     frame: &'b [u8],
-    key: &Key,
+    key: &SharedKey,
     challenge: &Challenge,
-) -> Result<Bytes<'b>, Refused> {
-    let mut from = Bytes::of(frame);
+) -> Result<UnreadBytes<'b>, RefusedFrame> {
+    let mut from = UnreadBytes::of(frame);
     if from.take() != Some(magic) {
-        return Err(Refused::Garbage);
+        return Err(RefusedFrame::Garbage);
     }
     match from.take::<1>() {
         Some([VERSION]) => {}
-        Some([other]) => return Err(Refused::Version(other)),
-        None => return Err(Refused::Garbage),
+        Some([other]) => return Err(RefusedFrame::Version(other)),
+        None => return Err(RefusedFrame::Garbage),
     }
-    let (Some(sum), Some(proof)) = (from.take::<4>(), from.take::<32>()) else { return Err(Refused::Garbage) };
+    let (Some(sum), Some(proof)) = (from.take::<4>(), from.take::<32>()) else { return Err(RefusedFrame::Garbage) };
     if checksum(from.rest()) != sum {
-        return Err(Refused::Garbage);
+        return Err(RefusedFrame::Garbage);
     }
     // The comparison takes constant time, so its duration reveals nothing about a valid proof.
     if key.proof(challenge, magic, from.rest()) != blake3::Hash::from_bytes(proof) {
-        return Err(Refused::Key);
+        return Err(RefusedFrame::Key);
     }
     Ok(from)
 }
@@ -209,25 +209,25 @@ mod tests {
     fn a_frame_counts_for_its_challenge_alone() {
         let [one, other] = [(); 2].map(|()| Challenge::random().unwrap());
         assert_ne!(one, other);
-        let key = Key::of("a key");
-        let draft = Draft::new(MAGIC, None, b"body".to_vec(), &key);
+        let key = SharedKey::of("a key");
+        let draft = FrameDraft::new(MAGIC, None, b"body".to_vec(), &key);
         let frame = draft.frame(&one)[4..].to_vec();
         assert_eq!(opened(MAGIC, &frame, &key, &one).unwrap().text().unwrap(), "body");
         for challenge in [other, Challenge::NONE] {
-            assert_eq!(opened(MAGIC, &frame, &key, &challenge).err(), Some(Refused::Key));
+            assert_eq!(opened(MAGIC, &frame, &key, &challenge).err(), Some(RefusedFrame::Key));
         }
     }
 
     #[test]
     fn the_proof_covers_first_bytes_and_version() {
-        let (key, challenge) = (Key::of("a key"), Challenge::NONE);
-        let mut frame = Draft::new(MAGIC, None, b"body".to_vec(), &key).frame(&challenge)[4..].to_vec();
+        let (key, challenge) = (SharedKey::of("a key"), Challenge::NONE);
+        let mut frame = FrameDraft::new(MAGIC, None, b"body".to_vec(), &key).frame(&challenge)[4..].to_vec();
         frame[3] = b'l';
-        assert_eq!(opened(*b"MDLl", &frame, &key, &challenge).err(), Some(Refused::Key));
+        assert_eq!(opened(*b"MDLl", &frame, &key, &challenge).err(), Some(RefusedFrame::Key));
         let older = blake3::keyed_hash(&key.0, b"body");
         frame[3] = b'e';
         frame[9..41].copy_from_slice(older.as_bytes());
-        assert_eq!(opened(MAGIC, &frame, &key, &challenge).err(), Some(Refused::Key));
+        assert_eq!(opened(MAGIC, &frame, &key, &challenge).err(), Some(RefusedFrame::Key));
     }
 
     #[test]
@@ -236,8 +236,8 @@ mod tests {
         let mut greeting = challenge.greeting();
         assert_eq!(Challenge::of_greeting(&greeting), Ok(challenge));
         greeting[4] = 9;
-        assert_eq!(Challenge::of_greeting(&greeting), Err(Refused::Version(9)));
+        assert_eq!(Challenge::of_greeting(&greeting), Err(RefusedFrame::Version(9)));
         greeting[0] = 0;
-        assert_eq!(Challenge::of_greeting(&greeting), Err(Refused::Garbage));
+        assert_eq!(Challenge::of_greeting(&greeting), Err(RefusedFrame::Garbage));
     }
 }

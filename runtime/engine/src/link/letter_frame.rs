@@ -3,8 +3,8 @@
 
 use mdle_runtime::Nanos;
 
-use super::bytes::{Bytes, put_name};
-use super::frame::{Challenge, Draft, Key, Refused, opened};
+use super::bytes::{UnreadBytes, put_name};
+use super::frame::{Challenge, FrameDraft, RefusedFrame, SharedKey, opened};
 use super::letter::{Content, LONGEST_SENTENCE, LONGEST_TEXT, Letter, cut};
 use crate::plans::When;
 
@@ -36,7 +36,7 @@ pub(super) fn is_letter(frame: &[u8]) -> bool {
 }
 
 /// Returns the draft of a letter.
-pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Draft {
+pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &SharedKey) -> FrameDraft {
     let mut body = Vec::new();
     put_name(&mut body, &envelope.from);
     put_name(&mut body, &envelope.to);
@@ -54,18 +54,18 @@ pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &Key) -> Draft 
         }
     };
     body.extend(text.as_bytes());
-    Draft::new(MAGIC, None, body, key)
+    FrameDraft::new(MAGIC, None, body, key)
 }
 
 /// Parses the frame of a letter, without its length.
 ///
 /// # Errors
 /// Fails if the bytes are not a letter, or if its proof is not for this key and this challenge.
-pub(super) fn read(frame: &[u8], key: &Key, challenge: &Challenge) -> Result<(Envelope, Letter), Refused> {
-    letter(&mut opened(MAGIC, frame, key, challenge)?).ok_or(Refused::Garbage)
+pub(super) fn read(frame: &[u8], key: &SharedKey, challenge: &Challenge) -> Result<(Envelope, Letter), RefusedFrame> {
+    letter(&mut opened(MAGIC, frame, key, challenge)?).ok_or(RefusedFrame::Garbage)
 }
 
-fn letter(body: &mut Bytes<'_>) -> Option<(Envelope, Letter)> {
+fn letter(body: &mut UnreadBytes<'_>) -> Option<(Envelope, Letter)> {
     let (from, to) = (body.name()?, body.name()?);
     let (sent_in, meant_for, number, sent) = (body.number()?, body.number()?, body.number()?, Nanos(body.number()?));
     let [kind] = body.take()?;
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_letter_is_read_as_it_was_written() {
-        let key = Key::of("pair");
+        let key = SharedKey::of("pair");
         for letter in letters() {
             let frame = written(&envelope(), &letter, &key).frame(&Challenge::NONE);
             assert!(is_letter(&frame[4..]) && frame.len() < LONGEST_LETTER);
@@ -111,11 +111,11 @@ mod tests {
 
     #[test]
     fn any_other_bytes_are_no_letter() {
-        let key = Key::of("pair");
-        let read = |frame: &[u8], key: &Key| read(frame, key, &Challenge::NONE);
+        let key = SharedKey::of("pair");
+        let read = |frame: &[u8], key: &SharedKey| read(frame, key, &Challenge::NONE);
         for letter in letters() {
             let frame = written(&envelope(), &letter, &key).frame(&Challenge::NONE)[4..].to_vec();
-            assert_eq!(read(&frame, &Key::of("another")), Err(Refused::Key));
+            assert_eq!(read(&frame, &SharedKey::of("another")), Err(RefusedFrame::Key));
             for place in 0..frame.len() {
                 let mut changed = frame.clone();
                 changed[place] ^= 1;
@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_long_text_is_cut_at_a_letter() {
-        let key = Key::of("pair");
+        let key = SharedKey::of("pair");
         let plan = |text| Content::Plan { when: When::Now, text };
         let answer = |sentence| Content::Answer { of: 1, is_accepted: false, sentence };
         let of = |content| Letter { from: "ada".to_owned(), number: 1, content };
@@ -143,7 +143,7 @@ mod tests {
         // A peer may send a longer sentence than this robot would.
         let mut body = written(&envelope(), &of(answer(String::new())), &key).frame(&Challenge::NONE).split_off(45);
         body.extend([b'x'; LONGEST_TEXT]);
-        let frame = Draft::new(MAGIC, None, body, &key).frame(&Challenge::NONE);
+        let frame = FrameDraft::new(MAGIC, None, body, &key).frame(&Challenge::NONE);
         let cut = of(answer("x".repeat(LONGEST_SENTENCE)));
         assert_eq!(read(&frame[4..], &key, &Challenge::NONE), Ok((envelope(), cut)));
     }

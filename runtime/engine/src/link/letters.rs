@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use mdle_runtime::Nanos;
 
-use super::frame::{Challenge, Draft, Key, Refused, VERSION};
+use super::frame::{Challenge, FrameDraft, RefusedFrame, SharedKey, VERSION};
 use super::letter::UNREAD;
 use super::letter_frame::{self, Envelope};
 use super::questions::Questions;
@@ -22,24 +22,24 @@ pub(super) struct Letters {
     /// Session of this robot.
     session: u64,
     /// Name of each peer with which letters are exchanged, with the key that only these two robots share.
-    keys: Vec<(String, Key)>,
-    unread: Mutex<Unread>,
+    keys: Vec<(String, SharedKey)>,
+    unread: Mutex<ArrivedLetters>,
     questions: Mutex<Questions>,
 }
 
 /// Letters that have arrived.
 #[derive(Default)]
-struct Unread {
+struct ArrivedLetters {
     /// Number of the last letter from each sender in each of its sessions.
     taken: BTreeMap<(String, u64), u64>,
     /// Letters that have arrived since the last turn.
-    letters: Vec<Waiting>,
+    letters: Vec<WaitingLetter>,
     /// Plans that were refused and not answered yet.
     refused: Vec<RefusedPlan>,
 }
 
 /// A letter that waits for the robot's turn.
-struct Waiting {
+struct WaitingLetter {
     letter: Letter,
     /// Arrival time of the letter.
     at: Nanos,
@@ -51,7 +51,7 @@ impl Letters {
     /// Returns the letters of the robot `own` in this session. `keys` contains the name of each peer, with the key that
     /// the robot shares with the peer.
     pub(super) fn new(own: &str, session: u64, keys: &[(String, String)]) -> Self {
-        let keys = keys.iter().map(|(name, key)| (name.clone(), Key::of_letters(key))).collect();
+        let keys = keys.iter().map(|(name, key)| (name.clone(), SharedKey::of_letters(key))).collect();
         Self { own: own.to_owned(), session, keys, unread: Mutex::default(), questions: Mutex::default() }
     }
 
@@ -60,7 +60,13 @@ impl Letters {
     ///
     /// # Errors
     /// Returns a sentence if the robot and the peer share no key for letters, or if no state of the peer has arrived.
-    pub(super) fn draft(&self, to: &str, letter: &Letter, session: Option<u64>, sent: Nanos) -> Result<Draft, String> {
+    pub(super) fn draft(
+        &self,
+        to: &str,
+        letter: &Letter,
+        session: Option<u64>,
+        sent: Nanos,
+    ) -> Result<FrameDraft, String> {
         let key = self.key(to).ok_or_else(|| format!("the file of the link has no key `plans` for {to}"))?;
         let meant_for = session.ok_or_else(|| {
             format!("{to} has not been heard yet; send the plan again once it runs with a link to this robot")
@@ -105,9 +111,9 @@ impl Letters {
         let key = self.key(robot);
         let key = key.ok_or_else(|| format!("no plans are exchanged with {robot}"))?;
         let (envelope, letter) = letter_frame::read(frame, key, challenge).map_err(|refused| match refused {
-            Refused::Garbage | Refused::Impossible => "it is damaged".to_owned(),
-            Refused::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
-            Refused::Key => "it has another key `plans`, or was recorded".to_owned(),
+            RefusedFrame::Garbage | RefusedFrame::Impossible => "it is damaged".to_owned(),
+            RefusedFrame::Version(other) => format!("its version of the link is {other}, and this one has {VERSION}"),
+            RefusedFrame::Key => "it has another key `plans`, or was recorded".to_owned(),
         })?;
         let Envelope { from, to, sent_in, meant_for, sent } = envelope;
         if from != robot || to != self.own || session != Some(sent_in) {
@@ -123,12 +129,12 @@ impl Letters {
         let is_for_this_run = meant_for == self.session;
         match &letter.content {
             Content::Plan { .. } if is_for_this_run => {
-                unread.put(Waiting { letter, at: clock::now(), late: late(sent) });
+                unread.put(WaitingLetter { letter, at: clock::now(), late: late(sent) });
             }
             Content::Plan { .. } => unread.refuse(&letter, format!("it was sent to an earlier run of {}", self.own)),
             Content::Answer { of, .. } if is_for_this_run => {
                 lock(&self.questions).answer(robot, *of)?;
-                unread.letters.push(Waiting { letter, at: clock::now(), late: Nanos::ZERO });
+                unread.letters.push(WaitingLetter { letter, at: clock::now(), late: Nanos::ZERO });
             }
             Content::Answer { .. } => return Err("it is not for this run".to_owned()),
         }
@@ -154,14 +160,14 @@ impl Letters {
         std::mem::take(&mut lock(&self.unread).refused)
     }
 
-    fn key(&self, peer: &str) -> Option<&Key> {
+    fn key(&self, peer: &str) -> Option<&SharedKey> {
         self.keys.iter().find(|(name, _)| name == peer).map(|(_, key)| key)
     }
 }
 
-impl Unread {
+impl ArrivedLetters {
     /// Adds a plan, which replaces an older plan from its sender; refuses the plan if it is too late.
-    fn put(&mut self, plan: Waiting) {
+    fn put(&mut self, plan: WaitingLetter) {
         if let Some(reason) = plan.lateness(plan.at) {
             return self.refuse(&plan.letter, reason);
         }
@@ -183,7 +189,7 @@ impl Unread {
     }
 }
 
-impl Waiting {
+impl WaitingLetter {
     /// Returns the reason to refuse a plan that is too late at time `now`: an attacker on the line may have delayed it.
     /// Returns `None` for an answer, and for a plan in time.
     fn lateness(&self, now: Nanos) -> Option<String> {

@@ -36,11 +36,11 @@ use mdle_runtime::Nanos;
 
 pub use air::{Air, Faults};
 pub use endpoint::{Endpoint, LinkSettings};
-pub use frame::{Challenge, Draft};
+pub use frame::{Challenge, FrameDraft};
 pub use letter::{Content, LONGEST_TEXT, Letter, RefusedPlan};
 pub use letter_frame::LONGEST_LETTER;
 pub use outbox::{Outbox, Posted};
-pub use source::Source;
+pub use source::FrameSource;
 pub use state::{SharedValue, State};
 pub use state_link::StateLink;
 pub use tcp::{Tcp, TcpSettings};

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use mdle_runtime::{Nanos, Printable};
 
-use super::pace::{Admission, Pace};
+use super::pace::{Admission, RateLimiter};
 use super::{Content, LONGEST_TEXT, Letter, Link, RefusedPlan};
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 
@@ -17,7 +17,7 @@ const NAMES: usize = 64;
 
 /// Plans that are exchanged with other robots.
 #[derive(Debug, Default)]
-pub(super) struct Orders {
+pub(super) struct PlanExchange {
     /// Name of this robot.
     own: String,
     /// Names of the robots whose plans are accepted.
@@ -29,14 +29,14 @@ pub(super) struct Orders {
     /// Numbers and names of recently sent plans, for messages about their answers.
     names: VecDeque<(u64, String)>,
     /// Plans of other robots that have neither taken over nor been refused yet.
-    waiting: Vec<Order>,
+    waiting: Vec<ReceivedPlan>,
     /// Pace of each robot that has sent plans, by name.
-    paces: BTreeMap<String, Pace>,
+    paces: BTreeMap<String, RateLimiter>,
 }
 
 /// A plan of another robot.
 #[derive(Debug)]
-struct Order {
+struct ReceivedPlan {
     /// Number of this robot's request to compile the plan.
     ticket: u32,
     from: String,
@@ -48,7 +48,7 @@ struct Order {
     warnings: String,
 }
 
-impl Orders {
+impl PlanExchange {
     /// Returns the orders of the robot `own`, which does not exchange plans with any robot yet.
     pub(super) fn of(own: &str) -> Self {
         Self { own: own.to_owned(), ..Self::default() }
@@ -117,7 +117,7 @@ impl Orders {
             Content::Plan { when, text } => match self.paces.entry(from.clone()).or_default().admits(now) {
                 Admission::Taken => {
                     let ticket = plans.swap(PlanSource::Peer { robot: from.clone(), text }, when);
-                    self.waiting.push(Order { ticket, from, number, when, warnings: String::new() });
+                    self.waiting.push(ReceivedPlan { ticket, from, number, when, warnings: String::new() });
                     None
                 }
                 admission @ (Admission::TooFast | Admission::StillTooFast) => {
@@ -167,7 +167,7 @@ impl Orders {
     }
 }
 
-impl Order {
+impl ReceivedPlan {
     /// Returns the answer to the sender after an event of the request; `None` if the event requires no answer.
     fn answer<A: EngineAlphabet>(&mut self, event: &PlanEvent, plans: &Plans<A>) -> Option<Result<String, String>> {
         let refused = |sentence: &str| Some(Err(sentence.to_owned()));

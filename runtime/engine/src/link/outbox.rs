@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::frame::Draft;
+use super::frame::FrameDraft;
 use super::letter::UNREAD;
 use super::lock;
 
@@ -21,7 +21,7 @@ pub struct Posted {
     /// Number of the letter; this robot counts its letters from 1.
     pub number: u64,
     /// Draft of the letter, without its proof.
-    pub draft: Draft,
+    pub draft: FrameDraft,
     /// `true` if the letter contains a plan, for which an answer is expected.
     pub is_plan: bool,
     /// Time after which the letter is no longer sent.
@@ -31,16 +31,16 @@ pub struct Posted {
 /// The newest state and the letters that have to be sent.
 #[derive(Default)]
 pub struct Outbox {
-    waiting: Mutex<Waiting>,
+    waiting: Mutex<WaitingFrames>,
     is_new: Condvar,
 }
 
 #[derive(Default)]
-struct Waiting {
+struct WaitingFrames {
     /// `true` while a connection is open.
     is_open: bool,
     /// The newest state; `None` after it was taken.
-    state: Option<Draft>,
+    state: Option<FrameDraft>,
     letters: VecDeque<Waits>,
 }
 
@@ -69,7 +69,7 @@ impl Outbox {
     }
 
     /// Replaces the state, without waiting.
-    pub fn put(&self, state: Draft) {
+    pub fn put(&self, state: FrameDraft) {
         lock(&self.waiting).state = Some(state);
         self.is_new.notify_one();
     }
@@ -107,10 +107,10 @@ impl Outbox {
     /// Waits at most half a second for a new state or an unsent letter. Returns the state, or `None` if there is no new
     /// state.
     #[must_use]
-    pub fn next(&self) -> Option<Draft> {
+    pub fn next(&self) -> Option<FrameDraft> {
         let waiting = lock(&self.waiting);
         let is_idle =
-            |waiting: &mut Waiting| waiting.state.is_none() && waiting.letters.iter().all(|waits| waits.is_sent);
+            |waiting: &mut WaitingFrames| waiting.state.is_none() && waiting.letters.iter().all(|waits| waits.is_sent);
         let waited = self.is_new.wait_timeout_while(waiting, HEARTBEAT, is_idle);
         let (mut waiting, _) = waited.unwrap_or_else(PoisonError::into_inner);
         waiting.state.take()
@@ -162,11 +162,11 @@ impl Waits {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::link::frame::Key;
+    use crate::link::frame::SharedKey;
 
     fn letter(number: u64, is_plan: bool, limit: u64) -> Posted {
         let (draft, limit) =
-            (Draft::new(*b"MDLl", None, Vec::new(), &Key::of_letters("pair")), Duration::from_secs(limit));
+            (FrameDraft::new(*b"MDLl", None, Vec::new(), &SharedKey::of_letters("pair")), Duration::from_secs(limit));
         Posted { to: "bob".to_owned(), number, draft, is_plan, limit }
     }
 

@@ -9,7 +9,7 @@ const BURST: u64 = 4 * SPACING;
 
 /// Rate limiter for the plans of one robot.
 #[derive(Debug, Default)]
-pub(super) struct Pace {
+pub(super) struct RateLimiter {
     /// Time from which a full burst is permitted again.
     rested: Nanos,
     /// `true` if the last plan came too early.
@@ -27,7 +27,7 @@ pub(super) enum Admission {
     StillTooFast,
 }
 
-impl Pace {
+impl RateLimiter {
     /// Decides whether to accept a plan that arrives at time `now`.
     pub(super) fn admits(&mut self, now: Nanos) -> Admission {
         // After the clock jumps back, no robot waits longer than after a full burst.
@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn four_plans_come_at_once_and_then_one_a_second() {
-        let mut pace = Pace::default();
+        let mut pace = RateLimiter::default();
         let mut at = |millis: u64| pace.admits(Nanos(millis * 1_000_000));
         use Admission::{StillTooFast, Taken, TooFast};
         assert_eq!([5_000; 6].map(&mut at), [Taken, Taken, Taken, Taken, TooFast, StillTooFast]);

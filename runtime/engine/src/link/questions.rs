@@ -12,11 +12,11 @@ const MOST: u8 = 3;
 
 /// The sent plans that are kept, oldest first.
 #[derive(Debug, Default)]
-pub(super) struct Questions(VecDeque<Question>);
+pub(super) struct Questions(VecDeque<UnansweredPlan>);
 
 /// A plan that was sent.
 #[derive(Debug)]
-struct Question {
+struct UnansweredPlan {
     to: String,
     /// Number of the letter that contains the plan.
     number: u64,
@@ -33,7 +33,7 @@ impl Questions {
         if self.0.len() >= KNOWN {
             self.0.pop_front();
         }
-        self.0.push_back(Question { to: to.to_owned(), number, at: now, answers: 0, is_open: true });
+        self.0.push_back(UnansweredPlan { to: to.to_owned(), number, at: now, answers: 0, is_open: true });
     }
 
     /// Removes the plan in the letter with this number, which was not sent.
@@ -59,7 +59,7 @@ impl Questions {
     /// only once.
     pub(super) fn unanswered(&mut self, now: Instant) -> Vec<String> {
         let is_late =
-            |question: &&mut Question| question.is_open && now.saturating_duration_since(question.at) >= ANSWERS;
+            |question: &&mut UnansweredPlan| question.is_open && now.saturating_duration_since(question.at) >= ANSWERS;
         let late = self.0.iter_mut().filter(is_late).map(|question| {
             question.is_open = false;
             question.to.clone()

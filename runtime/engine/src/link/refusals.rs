@@ -10,10 +10,10 @@ const KNOWN: usize = 64;
 
 /// Recent warnings by text.
 #[derive(Debug, Default)]
-pub(super) struct Refusals(BTreeMap<String, Refusal>);
+pub(super) struct Refusals(BTreeMap<String, RefusalCount>);
 
 #[derive(Debug)]
-struct Refusal {
+struct RefusalCount {
     /// Time at which the warning was given.
     at: Instant,
     /// Number of times that the cause has recurred since the warning.
@@ -31,7 +31,7 @@ impl Refusals {
                 return None;
             }
             let (seconds, count) = (now.saturating_duration_since(known.at).as_secs(), known.count);
-            *known = Refusal { at: now, count: 0 };
+            *known = RefusalCount { at: now, count: 0 };
             return Some(format!("{warning} ({count} times in {seconds} s)"));
         }
         if self.0.len() >= KNOWN {
@@ -40,7 +40,7 @@ impl Refusals {
         if self.0.len() >= KNOWN {
             return None;
         }
-        self.0.insert(warning.clone(), Refusal { at: now, count: 0 });
+        self.0.insert(warning.clone(), RefusalCount { at: now, count: 0 });
         Some(warning)
     }
 }

@@ -12,11 +12,11 @@ const OVER: usize = 256;
 
 /// Sessions of all other robots.
 #[derive(Debug, Default)]
-pub(super) struct Sessions(BTreeMap<String, Session>);
+pub(super) struct Sessions(BTreeMap<String, RobotSession>);
 
 /// The current session of a robot.
 #[derive(Debug)]
-struct Session {
+struct RobotSession {
     session: u64,
     /// Number of the newest state.
     number: u64,
@@ -39,7 +39,7 @@ impl Sessions {
     /// Returns the end of a sentence if the state belongs to an ended session, or to another robot with the same name.
     pub(super) fn take(&mut self, robot: &str, (session, number): (u64, u64), now: Instant) -> Result<bool, String> {
         let Some(known) = self.0.get_mut(robot) else {
-            self.0.insert(robot.to_owned(), Session { session, number, at: now, over: VecDeque::new() });
+            self.0.insert(robot.to_owned(), RobotSession { session, number, at: now, over: VecDeque::new() });
             return Ok(true);
         };
         if known.session == session {

@@ -13,7 +13,7 @@ const LETTERS: u32 = 40;
 
 /// A source of frames: its robot, and the number of states and letters that it has sent in the current second.
 #[derive(Debug)]
-pub struct Source {
+pub struct FrameSource {
     pub(super) challenge: Challenge,
     /// Name of the robot; `None` until a frame has proved it.
     pub(super) robot: Option<String>,
@@ -23,7 +23,7 @@ pub struct Source {
     letters: u32,
 }
 
-impl Source {
+impl FrameSource {
     /// Returns the source for a new connection, on which each frame needs a proof for this challenge.
     pub(super) fn of_connection(challenge: Challenge) -> Self {
         Self { challenge, robot: None, lag: Lag::default(), second: Instant::now(), states: 0, letters: 0 }

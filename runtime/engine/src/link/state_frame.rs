@@ -2,8 +2,8 @@
 
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, PEERS, Pose, Radians, RadiansPerSecond, Twist};
 
-use super::bytes::{Bytes, fits, put_name};
-use super::frame::{Challenge, Draft, Key, Refused, Times, opened};
+use super::bytes::{UnreadBytes, fits, put_name};
+use super::frame::{Challenge, FrameDraft, RefusedFrame, SharedKey, StateTimes, opened};
 use super::{SharedValue, State};
 use crate::attribute::{AttributeKind, AttributeName, Value};
 
@@ -18,7 +18,7 @@ const FARTHEST: f64 = 1e6;
 const FASTEST: f64 = 1e3;
 
 /// Returns the draft of a state with these times. Attributes whose names do not fit are omitted.
-pub(super) fn written(state: &State, times: Times, key: &Key) -> Draft {
+pub(super) fn written(state: &State, times: StateTimes, key: &SharedKey) -> FrameDraft {
     let mut body = Vec::with_capacity(256);
     put_name(&mut body, &state.name);
     [state.session, state.number].iter().for_each(|number| body.extend(number.to_le_bytes()));
@@ -42,7 +42,7 @@ pub(super) fn written(state: &State, times: Times, key: &Key) -> Draft {
         body.extend(value.bits().to_le_bytes());
         body.extend(age.0.to_le_bytes());
     }
-    Draft::new(MAGIC, Some(times), body, key)
+    FrameDraft::new(MAGIC, Some(times), body, key)
 }
 
 /// Returns `true` if an attribute's name fits into a frame.
@@ -55,19 +55,19 @@ pub(super) fn has_fitting_name(SharedValue { name, .. }: &SharedValue) -> bool {
 ///
 /// # Errors
 /// Fails if the bytes are not the frame of a state, or if its proof is not for this key and this challenge.
-pub(super) fn read(frame: &[u8], key: &Key, challenge: &Challenge) -> Result<(State, Nanos), Refused> {
-    let (state, written) = state(&mut opened(MAGIC, frame, key, challenge)?).ok_or(Refused::Garbage)?;
+pub(super) fn read(frame: &[u8], key: &SharedKey, challenge: &Challenge) -> Result<(State, Nanos), RefusedFrame> {
+    let (state, written) = state(&mut opened(MAGIC, frame, key, challenge)?).ok_or(RefusedFrame::Garbage)?;
     let Pose { x, y, theta } = state.pose;
     let Twist { v, omega } = state.velocity;
     // Larger numbers would cause overflows in laws that use them.
     if [x.0, y.0].iter().any(|place| place.abs() > FARTHEST) || [v.0, omega.0].iter().any(|speed| speed.abs() > FASTEST)
     {
-        return Err(Refused::Impossible);
+        return Err(RefusedFrame::Impossible);
     }
     Ok((State { pose: Pose { x, y, theta: theta.wrapped() }, ..state }, written))
 }
 
-fn state(from: &mut Bytes<'_>) -> Option<(State, Nanos)> {
+fn state(from: &mut UnreadBytes<'_>) -> Option<(State, Nanos)> {
     let (written, age) = (Nanos(from.number()?), Nanos(from.number()?));
     let name = from.name()?;
     let (session, number) = (from.number()?, from.number()?);
@@ -84,7 +84,7 @@ fn state(from: &mut Bytes<'_>) -> Option<(State, Nanos)> {
 }
 
 /// Reads an attribute with its value; `None` if the value is not a number or is NaN.
-fn attribute(from: &mut Bytes<'_>) -> Option<SharedValue> {
+fn attribute(from: &mut UnreadBytes<'_>) -> Option<SharedValue> {
     let name = AttributeName::new(&from.name()?, &from.name()?);
     let [kind] = from.take()?;
     let value = Value::of_bits(AttributeKind::of_number(kind)?, from.number()?);
@@ -99,7 +99,7 @@ mod tests {
     use crate::link::frame::VERSION;
 
     /// Times of a state that is written 15 ns after the start of the session and is 3 ns old.
-    const TIMES: Times = Times { begun: Nanos(5), measured: Nanos(17) };
+    const TIMES: StateTimes = StateTimes { begun: Nanos(5), measured: Nanos(17) };
     const WRITTEN: Nanos = Nanos(20);
 
     fn sent() -> State {
@@ -120,19 +120,19 @@ mod tests {
     }
 
     /// Returns the frame of a state without its length.
-    fn frame(state: &State, key: &Key) -> Vec<u8> {
+    fn frame(state: &State, key: &SharedKey) -> Vec<u8> {
         written(state, TIMES, key).frame_at(&Challenge::NONE, WRITTEN)[4..].to_vec()
     }
 
     /// Writes and reads the frame of a state, as if another robot had sent it.
-    fn taken(state: &State) -> Result<State, Refused> {
-        let key = Key::of("a key");
+    fn taken(state: &State) -> Result<State, RefusedFrame> {
+        let key = SharedKey::of("a key");
         read(&frame(state, &key), &key, &Challenge::NONE).map(|(state, _)| state)
     }
 
     #[test]
     fn a_state_is_read_as_it_was_written() {
-        let key = Key::of("a key");
+        let key = SharedKey::of("a key");
         let frame = written(&sent(), TIMES, &key).frame_at(&Challenge::NONE, WRITTEN);
         let (length, rest) = frame.split_first_chunk().unwrap();
         assert_eq!(u32::from_le_bytes(*length) as usize, rest.len());
@@ -142,26 +142,26 @@ mod tests {
 
     #[test]
     fn any_other_bytes_are_refused() {
-        let key = Key::of("a key");
-        let read = |frame: &[u8], key: &Key| read(frame, key, &Challenge::NONE);
+        let key = SharedKey::of("a key");
+        let read = |frame: &[u8], key: &SharedKey| read(frame, key, &Challenge::NONE);
         let frame = frame(&sent(), &key);
-        assert_eq!(read(&frame, &Key::of("another")), Err(Refused::Key));
+        assert_eq!(read(&frame, &SharedKey::of("another")), Err(RefusedFrame::Key));
         for length in 0..frame.len() {
-            assert_eq!(read(&frame[..length], &key), Err(Refused::Garbage), "the first {length} bytes");
+            assert_eq!(read(&frame[..length], &key), Err(RefusedFrame::Garbage), "the first {length} bytes");
         }
         for place in 0..frame.len() {
             let mut changed = frame.clone();
             changed[place] ^= 1;
             let expected = match place {
-                4 => Refused::Version(VERSION ^ 1),
-                9..41 => Refused::Key,
-                _ => Refused::Garbage,
+                4 => RefusedFrame::Version(VERSION ^ 1),
+                9..41 => RefusedFrame::Key,
+                _ => RefusedFrame::Garbage,
             };
             assert_eq!(read(&changed, &key), Err(expected), "byte {place}");
         }
         for value in [Value::Number(f64::NAN), Value::Flag(true), Value::Text("text".into())] {
             let no_number = State { attributes: vec![shared("range", value)], ..sent() };
-            assert_eq!(taken(&no_number), Err(Refused::Garbage));
+            assert_eq!(taken(&no_number), Err(RefusedFrame::Garbage));
         }
     }
 
@@ -172,14 +172,14 @@ mod tests {
             change(&mut state);
             taken(&state)
         };
-        assert_eq!(with(|state| state.pose.x.0 = f64::NAN), Err(Refused::Garbage));
+        assert_eq!(with(|state| state.pose.x.0 = f64::NAN), Err(RefusedFrame::Garbage));
         for change in [
             |state: &mut State| state.pose.x.0 = 1.7e308,
             |state: &mut State| state.pose.y.0 = -1.1e6,
             |state: &mut State| state.velocity.v.0 = 1.1e3,
             |state: &mut State| state.velocity.omega.0 = -1.7e308,
         ] {
-            assert_eq!(with(change), Err(Refused::Impossible));
+            assert_eq!(with(change), Err(RefusedFrame::Impossible));
         }
         let turned = with(|state| state.pose.theta = Radians::from_degrees(350.0)).unwrap();
         assert!((turned.pose.theta.0 - Radians::from_degrees(-10.0).0).abs() < 1e-9, "{turned:?}");
@@ -196,7 +196,7 @@ mod tests {
         let mut rounds = vec![("r".repeat(NAME), 1); 20];
         rounds.insert(0, ("r".repeat(NAME + 1), 1));
         let long = State { name: "n".repeat(NAME), rounds, attributes, ..sent() };
-        assert!(frame(&long, &Key::of("")).len() < LONGEST);
+        assert!(frame(&long, &SharedKey::of("")).len() < LONGEST);
         let state = taken(&long).unwrap();
         assert_eq!((state.name.len(), state.rounds.len(), state.attributes.len()), (NAME, PEERS, ATTRIBUTES));
         assert!(state.attributes.iter().all(|shared| *shared == attribute(NAME)), "what is too long is left out");

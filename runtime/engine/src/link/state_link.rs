@@ -4,7 +4,7 @@ use mdle_host::Transitions;
 use mdle_runtime::{Links, Machine, Meters, ModuleRead, Nanos, Output, Peer, PeerState, Plan, Pose, Radians};
 
 use super::foreign_names::ForeignNames;
-use super::orders::Orders;
+use super::orders::PlanExchange;
 use super::rounds::Rounds;
 use super::state_frame::ATTRIBUTES;
 use super::{Foreign, Link, SharedValue, State};
@@ -21,17 +21,17 @@ pub struct StateLink {
     /// Number of the last state that was sent.
     sent: u64,
     /// The newest state of each other robot.
-    known: Vec<Known>,
+    known: Vec<NewestState>,
     rounds: Rounds,
     /// Modules whose attributes the robot shares, each given as a read of its `age`.
     shares: &'static [ModuleRead],
     /// Names of the attributes that other robots share.
     foreign: ForeignNames,
-    orders: Orders,
+    orders: PlanExchange,
 }
 
 /// The newest state of another robot.
-struct Known {
+struct NewestState {
     state: State,
     /// Arrival time of the state.
     at: Nanos,
@@ -53,7 +53,7 @@ impl StateLink {
             rounds: Rounds::default(),
             shares: &[],
             foreign: ForeignNames::default(),
-            orders: Orders::of(name),
+            orders: PlanExchange::of(name),
         }
     }
 
@@ -108,13 +108,13 @@ impl StateLink {
         let Self { link, known, name, foreign, .. } = self;
         link.receive(now, &mut |state| match known.iter_mut().find(|known| known.state.name == state.name) {
             // The state that was sent last is kept, regardless of the order of arrival.
-            Some(place) if state.replaces(&place.state) => *place = Known { state, at: now, is_new: true },
+            Some(place) if state.replaces(&place.state) => *place = NewestState { state, at: now, is_new: true },
             Some(_) => {}
             None if state.name == *name => {}
-            None => known.push(Known { state, at: now, is_new: true }),
+            None => known.push(NewestState { state, at: now, is_new: true }),
         });
         let mut messages = Vec::new();
-        for Known { state, at, .. } in known.iter().filter(|known| known.is_new) {
+        for NewestState { state, at, .. } in known.iter().filter(|known| known.is_new) {
             foreign.put(state, *at, board, &mut |message| messages.push(message));
         }
         known.iter_mut().for_each(|known| known.is_new = false);
@@ -178,7 +178,7 @@ impl StateLink {
     /// Returns the known state of the robot with this name.
     fn peer(&self, robot: &'static str, now: Nanos) -> Peer {
         let known = self.known.iter().find(|known| known.state.name == robot);
-        let state = known.map(|Known { state, at, .. }| PeerState {
+        let state = known.map(|NewestState { state, at, .. }| PeerState {
             pose: inward(&self.start, &state.pose),
             velocity: state.velocity,
             age: Nanos(now.since(*at).0.saturating_add(state.age.0)),

@@ -104,12 +104,12 @@ impl Offer<'_> {
 /// Exchange of values between the thread of a background module and the turn breaks. Its lock is held only briefly.
 #[derive(Debug, Default)]
 pub(crate) struct Gate {
-    meeting: Mutex<Meeting>,
+    meeting: Mutex<BreakMeeting>,
     changed: Condvar,
 }
 
 #[derive(Debug, Default)]
-struct Meeting {
+struct BreakMeeting {
     /// `true` once the module may run.
     has_begun: bool,
     /// Values of a module that waits for a turn break; `None` if the module does not wait.
@@ -134,7 +134,7 @@ pub(crate) enum ThreadEnd {
     Panicked(String),
 }
 
-impl Meeting {
+impl BreakMeeting {
     /// Returns `true` while the module neither waits for a turn break nor has ended.
     const fn is_awaited(&self) -> bool {
         self.offered.is_none() && !self.has_ended
@@ -142,11 +142,11 @@ impl Meeting {
 }
 
 impl Gate {
-    fn lock(&self) -> MutexGuard<'_, Meeting> {
+    fn lock(&self) -> MutexGuard<'_, BreakMeeting> {
         self.meeting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn wait<'g>(&'g self, meeting: MutexGuard<'g, Meeting>) -> MutexGuard<'g, Meeting> {
+    fn wait<'g>(&'g self, meeting: MutexGuard<'g, BreakMeeting>) -> MutexGuard<'g, BreakMeeting> {
         self.changed.wait(meeting).unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -230,7 +230,7 @@ impl Gate {
 
     /// Waits for the module's thread to end, at most for this time.
     pub(crate) fn wait_for_end(&self, patience: Duration) {
-        let lasts = |meeting: &mut Meeting| !meeting.has_ended;
+        let lasts = |meeting: &mut BreakMeeting| !meeting.has_ended;
         drop(self.changed.wait_timeout_while(self.lock(), patience, lasts));
     }
 }

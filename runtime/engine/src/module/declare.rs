@@ -22,7 +22,7 @@ pub struct Declare {
 pub(crate) struct Declared {
     pub(crate) doc: &'static str,
     pub(crate) publishes: Vec<About>,
-    pub(crate) reads: Vec<Source>,
+    pub(crate) reads: Vec<ValueSource>,
     /// Priority of the module: modules with higher priority begin their turns first.
     pub(crate) priority: i32,
     pub(crate) relevance: Relevance,
@@ -35,7 +35,7 @@ pub(crate) struct Declared {
 
 /// Source of a value that a module reads.
 #[derive(Debug)]
-pub(crate) enum Source {
+pub(crate) enum ValueSource {
     /// An attribute of another module: its name, and the kind that the module expects.
     Attribute(AttributeName, AttributeKind),
     /// A setting of the module itself: its description and its value.
@@ -118,7 +118,7 @@ impl Declare {
         for name in [module, attribute] {
             self.check_name(name);
         }
-        self.input(Source::Attribute(AttributeName::new(module, attribute), kind), None)
+        self.input(ValueSource::Attribute(AttributeName::new(module, attribute), kind), None)
     }
 
     /// Declares a setting of the module with its initial value; users can change the setting.
@@ -129,7 +129,7 @@ impl Declare {
             self.refuse(format!("the setting `{name}` is NaN at first"));
         }
         let reading = Reading { value, at: Nanos::ZERO };
-        In::new(self.input(Source::Setting(about, reading.clone()), Some(reading)))
+        In::new(self.input(ValueSource::Setting(about, reading.clone()), Some(reading)))
     }
 
     /// Describes an attribute or a setting that was declared before: the unit in which users read and write it (empty
@@ -187,7 +187,7 @@ impl Declare {
         self.declared.farewell = farewell;
     }
 
-    fn input(&mut self, source: Source, reading: Option<Reading>) -> usize {
+    fn input(&mut self, source: ValueSource, reading: Option<Reading>) -> usize {
         self.declared.reads.push(source);
         self.ports.ins.push(reading);
         self.ports.ins.len().saturating_sub(1)
@@ -226,24 +226,24 @@ impl Declared {
     /// Returns the settings with their values.
     pub(crate) fn settings(&self) -> impl Iterator<Item = (&About, &Reading)> {
         self.reads.iter().filter_map(|source| match source {
-            Source::Setting(about, reading) => Some((about, reading)),
-            Source::Attribute(..) => None,
+            ValueSource::Setting(about, reading) => Some((about, reading)),
+            ValueSource::Attribute(..) => None,
         })
     }
 
     /// Changes a setting; returns `false` if there is no such setting.
     pub(crate) fn set(&mut self, name: &str, new: Reading) -> bool {
         let mut readings = self.reads.iter_mut().filter_map(|source| match source {
-            Source::Setting(about, reading) if &*about.name == name => Some(reading),
-            Source::Setting(..) | Source::Attribute(..) => None,
+            ValueSource::Setting(about, reading) if &*about.name == name => Some(reading),
+            ValueSource::Setting(..) | ValueSource::Attribute(..) => None,
         });
         readings.next().map(|reading| *reading = new).is_some()
     }
 
     fn abouts_mut(&mut self) -> impl Iterator<Item = &mut About> {
         let settings = self.reads.iter_mut().filter_map(|source| match source {
-            Source::Setting(about, _) => Some(about),
-            Source::Attribute(..) => None,
+            ValueSource::Setting(about, _) => Some(about),
+            ValueSource::Attribute(..) => None,
         });
         self.publishes.iter_mut().chain(settings)
     }

@@ -11,7 +11,7 @@ pub use background::{Background, Exchange, Offer, Stopped};
 pub use candidate::{Candidate, PLAN, Refusal};
 pub(crate) use candidate::{Form, ROBOT, ThreadGate, panicked};
 pub use declare::{About, Declare, Relevance};
-pub(crate) use declare::{Declared, Ports, Source};
+pub(crate) use declare::{Declared, Ports, ValueSource};
 use mdle_runtime::Nanos;
 
 use crate::attribute::{Attribute, In, Out, Reading};

@@ -22,18 +22,18 @@ pub(crate) enum Compiler<A: EngineAlphabet> {
 }
 
 /// Orders for plans to take over that were waiting: one of the operator, and one of another robot.
-type Waiting<A> = [Option<Order<A>>; 2];
+type WaitingOrders<A> = [Option<Order<A>>; 2];
 
 /// The compiler's thread, which ends when this value is dropped.
 pub(crate) struct CompilerThread<A: EngineAlphabet>(Arc<Counter<A>>);
 
 /// Data that the control thread and the compiler's thread share.
 struct Counter<A: EngineAlphabet> {
-    state: Mutex<State<A>>,
+    state: Mutex<CompilerState<A>>,
     changed: Condvar,
 }
 
-struct State<A: EngineAlphabet> {
+struct CompilerState<A: EngineAlphabet> {
     /// Orders of the operator.
     waiting: VecDeque<Order<A>>,
     /// Newest order of another robot. It is carried out after all orders of the operator.
@@ -48,7 +48,7 @@ impl<A: EngineAlphabet> Compiler<A> {
     ///
     /// # Errors
     /// Fails with a sentence if too many orders wait.
-    pub(crate) fn order(&mut self, order: Order<A>) -> Result<Waiting<A>, String> {
+    pub(crate) fn order(&mut self, order: Order<A>) -> Result<WaitingOrders<A>, String> {
         match self {
             Self::Thread(thread) => thread.order(order),
             Self::AtOnce(compile, done) => {
@@ -59,7 +59,7 @@ impl<A: EngineAlphabet> Compiler<A> {
     }
 
     /// Removes and returns the orders for plans to take over that still wait.
-    pub(crate) fn take_back(&self) -> Waiting<A> {
+    pub(crate) fn take_back(&self) -> WaitingOrders<A> {
         match self {
             Self::Thread(thread) => thread.0.lock().take_back(),
             Self::AtOnce(..) => [None, None],
@@ -89,14 +89,14 @@ impl<A: EngineAlphabet> CompilerThread<A> {
     /// # Errors
     /// Fails if the system cannot create the thread.
     pub(crate) fn new(compile: Box<Compile<A>>) -> io::Result<Self> {
-        let state = State { waiting: VecDeque::new(), sent: None, done: VecDeque::new(), quits: false };
+        let state = CompilerState { waiting: VecDeque::new(), sent: None, done: VecDeque::new(), quits: false };
         let counter = Arc::new(Counter { state: Mutex::new(state), changed: Condvar::new() });
         let own = Arc::clone(&counter);
         thread::Builder::new().name("mdle compiler".to_owned()).spawn(move || own.serve(&compile))?;
         Ok(Self(counter))
     }
 
-    fn order(&self, order: Order<A>) -> Result<Waiting<A>, String> {
+    fn order(&self, order: Order<A>) -> Result<WaitingOrders<A>, String> {
         let mut state = self.0.lock();
         let superseded = if order.task.is_sent() {
             [state.sent.replace(order), None]
@@ -125,8 +125,8 @@ impl<A: EngineAlphabet> Drop for CompilerThread<A> {
     }
 }
 
-impl<A: EngineAlphabet> State<A> {
-    fn take_back(&mut self) -> Waiting<A> {
+impl<A: EngineAlphabet> CompilerState<A> {
+    fn take_back(&mut self) -> WaitingOrders<A> {
         [self.take_back_own(), self.sent.take()]
     }
 
@@ -138,7 +138,7 @@ impl<A: EngineAlphabet> State<A> {
 }
 
 impl<A: EngineAlphabet> Counter<A> {
-    fn lock(&self) -> MutexGuard<'_, State<A>> {
+    fn lock(&self) -> MutexGuard<'_, CompilerState<A>> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

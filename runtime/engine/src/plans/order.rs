@@ -42,10 +42,10 @@ pub type Compile<A> = dyn Fn(&PlanSource) -> Result<CompiledPlans<A>, String> + 
 /// A request that takes longer than a turn allows.
 pub(crate) struct Order<A: EngineAlphabet> {
     pub(crate) ticket: u32,
-    pub(crate) task: Task<A>,
+    pub(crate) task: SlowTask<A>,
 }
 
-pub(crate) enum Task<A: EngineAlphabet> {
+pub(crate) enum SlowTask<A: EngineAlphabet> {
     /// Compile plans, and store them unless another robot has sent them. If a moment is given, the plan takes over at
     /// that moment; the text must then contain exactly one plan.
     Compile(PlanSource, Option<When>),
@@ -65,11 +65,11 @@ pub(crate) struct Product<A: EngineAlphabet> {
     /// Plans to be stored, and their warnings.
     pub(crate) compiled: CompiledPlans<A>,
     /// The plan that takes over, before its first turn; `None` if no plan takes over.
-    pub(crate) next: Option<Next<A>>,
+    pub(crate) next: Option<NextPlan<A>>,
 }
 
 /// A plan that takes over, before its first turn.
-pub(crate) struct Next<A: EngineAlphabet> {
+pub(crate) struct NextPlan<A: EngineAlphabet> {
     pub(crate) plan: LoadedPlan<A>,
     /// Name and text of each file of the plan, the plan's own file first.
     pub(crate) files: Arc<[(String, String)]>,
@@ -86,13 +86,13 @@ impl<A: EngineAlphabet> Order<A> {
     }
 }
 
-impl<A: EngineAlphabet> Next<A> {
+impl<A: EngineAlphabet> NextPlan<A> {
     fn of(plan: &StoredPlan<A>, when: When) -> Self {
         Self { plan: plan.loaded.plan(), files: Arc::clone(&plan.files), when }
     }
 }
 
-impl<A: EngineAlphabet> Task<A> {
+impl<A: EngineAlphabet> SlowTask<A> {
     /// Returns `true` if another robot has sent the plan.
     pub(crate) fn is_sent(&self) -> bool {
         matches!(self, Self::Compile(PlanSource::Peer { .. }, _))
@@ -112,7 +112,7 @@ impl<A: EngineAlphabet> Task<A> {
                 let mut compiled = compile(&source)?;
                 let next = match (when, compiled.plans.as_slice()) {
                     (None, _) => None,
-                    (Some(when), [only]) => Some(Next::of(only, when)),
+                    (Some(when), [only]) => Some(NextPlan::of(only, when)),
                     (Some(_), plans) => {
                         let names = plans.iter().map(|plan| &*plan.name).collect::<Vec<_>>().join(", ");
                         return Err(format!("the text has several plans, and one of them can drive: {names}"));
@@ -126,7 +126,7 @@ impl<A: EngineAlphabet> Task<A> {
             }
             Self::Begin(plan, when) => {
                 let compiled = CompiledPlans { plans: Vec::new(), warnings: String::new() };
-                Ok(Product { compiled, next: Some(Next::of(&plan, when)) })
+                Ok(Product { compiled, next: Some(NextPlan::of(&plan, when)) })
             }
         }
     }

@@ -9,7 +9,7 @@ use mdle_runtime::Plan as _;
 
 use super::compiler::{Compiler, CompilerThread};
 use super::event::{PlanEvent, When};
-use super::order::{Compile, Next, Order, PlanSource, Task};
+use super::order::{Compile, NextPlan, Order, PlanSource, SlowTask};
 use super::running::{EngineAlphabet, Running};
 use super::stored::{MOST_STORED, StoredPlan};
 use super::{Plans, Spent};
@@ -69,7 +69,7 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Requests to store the plans of a text; returns the number of the request. The answer at a later turn break is
     /// [`PlanEvent::Stored`] or [`PlanEvent::Refused`].
     pub fn load(&mut self, source: PlanSource) -> u32 {
-        self.order(Task::Compile(source, None))
+        self.order(SlowTask::Compile(source, None))
     }
 
     /// Requests that the plan of a text take over; returns the number of the request. The plan is also stored, unless
@@ -78,7 +78,7 @@ impl<A: EngineAlphabet> Plans<A> {
     /// armed but has not begun, a later request replaces the plan. A request of another robot never does this to a
     /// request of the operator: it is refused while a plan of the operator is armed.
     pub fn swap(&mut self, source: PlanSource, when: When) -> u32 {
-        self.order(Task::Compile(source, Some(when)))
+        self.order(SlowTask::Compile(source, Some(when)))
     }
 
     /// Requests that a stored plan take over, as [`Plans::swap`] does; returns the number of the request.
@@ -87,14 +87,14 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Fails with a sentence if no plan with this name is stored.
     pub fn run(&mut self, name: &str, when: When) -> Result<u32, String> {
         let plan = self.stored_plan(name)?;
-        Ok(self.order(Task::Begin(plan, when)))
+        Ok(self.order(SlowTask::Begin(plan, when)))
     }
 
     /// Requests that a loaded plan take over; returns the number of the request. The plan is armed at once.
     pub fn replace(&mut self, plan: LoadedPlan<A>, when: When) -> u32 {
         self.last = self.last.saturating_add(1);
         let number = self.last;
-        self.arm_plan(number, Next { plan, files: Arc::default(), when });
+        self.arm_plan(number, NextPlan { plan, files: Arc::default(), when });
         number
     }
 
@@ -106,7 +106,7 @@ impl<A: EngineAlphabet> Plans<A> {
     pub fn follow(&mut self, plan: &StoredPlan<A>) -> Result<u32, String> {
         self.last = self.last.saturating_add(1);
         let number = self.last;
-        let next = Next { plan: plan.loaded.plan(), files: Arc::clone(&plan.files), when: When::Now };
+        let next = NextPlan { plan: plan.loaded.plan(), files: Arc::clone(&plan.files), when: When::Now };
         self.arm_plan(number, next);
         match self.events.pop_if(|event| matches!(event, PlanEvent::Refused(ticket, _) if *ticket == number)) {
             Some(PlanEvent::Refused(_, sentence)) => Err(sentence),
@@ -145,7 +145,7 @@ impl<A: EngineAlphabet> Plans<A> {
 
     /// Passes an order to the compiler; returns the number of the request. A plan of another robot that must not take
     /// over is refused instead.
-    fn order(&mut self, task: Task<A>) -> u32 {
+    fn order(&mut self, task: SlowTask<A>) -> u32 {
         self.last = self.last.saturating_add(1);
         let ticket = self.last;
         if task.is_sent() {
@@ -178,8 +178,8 @@ impl<A: EngineAlphabet> Plans<A> {
         result
     }
 
-    pub(super) fn arm_plan(&mut self, ticket: u32, next: Next<A>) {
-        let Next { plan, files, when } = next;
+    pub(super) fn arm_plan(&mut self, ticket: u32, next: NextPlan<A>) {
+        let NextPlan { plan, files, when } = next;
         let missing = plan.paths().iter().find(|path| !self.paths.contains(path));
         if let Some(path) = missing {
             let sentence = format!("the plan replays the path `{path}`, which the first plan of the run does not");

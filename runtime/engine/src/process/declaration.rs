@@ -4,7 +4,7 @@ use mdle_compiler::alphabet::did_you_mean;
 use mdle_runtime::{Nanos, Printable};
 use serde_json::{Map, Value as Json};
 
-use super::line::{Form, nanos, object};
+use super::line::{LineForm, nanos, object};
 use super::shown;
 use crate::attribute::{AttributeName, Reading, Value};
 use crate::module::Declare;
@@ -15,8 +15,8 @@ const KEYS: [&str; 3] = ["publishes", "reads", "latency"];
 /// Declaration of a child process.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Declaration {
-    publishes: Vec<(String, Form)>,
-    reads: Vec<(AttributeName, Form)>,
+    publishes: Vec<(String, LineForm)>,
+    reads: Vec<(AttributeName, LineForm)>,
     /// In stepped time, the time from sending a line to the child until its answer.
     latency: Nanos,
 }
@@ -94,13 +94,13 @@ impl Declaration {
 }
 
 /// Returns the names and forms in the table `key` of a declaration; an empty list if there is no such table.
-fn forms(object: &Map<String, Json>, key: &str, example: &str) -> Result<Vec<(String, Form)>, String> {
+fn forms(object: &Map<String, Json>, key: &str, example: &str) -> Result<Vec<(String, LineForm)>, String> {
     let Some(table) = object.get(key) else { return Ok(Vec::new()) };
     let table =
         table.as_object().ok_or_else(|| format!("`{key}` has to be an object, as in `\"{key}\": {example}`"))?;
     let forms = table.iter().map(|(name, word)| {
-        let form = word.as_str().and_then(Form::from_word);
-        let message = || format!("`{}` is {word}; expected one of {}", Printable(name), Form::words());
+        let form = word.as_str().and_then(LineForm::from_word);
+        let message = || format!("`{}` is {word}; expected one of {}", Printable(name), LineForm::words());
         form.map(|form| (name.clone(), form)).ok_or_else(message)
     });
     forms.collect()

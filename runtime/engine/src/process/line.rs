@@ -29,12 +29,12 @@ const QUANTITIES: [AttributeKind; 6] = [
 
 /// Kind of an attribute's values, and the unit of their numbers in lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Form {
+pub(super) struct LineForm {
     pub(super) kind: AttributeKind,
     pub(super) unit: Option<Unit>,
 }
 
-impl Form {
+impl LineForm {
     /// Returns the form for this word: a unit, or the name of a kind without units; `None` for any other word.
     pub(super) fn from_word(word: &str) -> Option<Self> {
         if let Some((_, kind)) = WORDS.into_iter().find(|(name, _)| *name == word) {
@@ -211,21 +211,24 @@ mod tests {
             ("numbers", Value::Numbers([1.0, 2.5].into())),
         ];
         for (word, value) in values {
-            let form = Form::from_word(word).unwrap();
+            let form = LineForm::from_word(word).unwrap();
             assert_eq!(form.read(&form.write(&value)), Ok(value), "{word}");
         }
-        assert_eq!(Form::from_word("Hz"), None);
-        assert_eq!(Form::from_word("deg").unwrap().read(&json!(180)), Ok(Value::Angle(Radians(std::f64::consts::PI))));
+        assert_eq!(LineForm::from_word("Hz"), None);
+        assert_eq!(
+            LineForm::from_word("deg").unwrap().read(&json!(180)),
+            Ok(Value::Angle(Radians(std::f64::consts::PI)))
+        );
     }
 
     #[test]
     fn numbers_that_python_prints_are_read() {
         let line = br#"{"a": NaN, "b": [-Infinity, Infinity], "NaN": "\" NaN"}"#;
         let object = object(line).unwrap();
-        assert!(Form::from_word("m").unwrap().read(&object["a"]).unwrap().has_nan());
-        let numbers = Form::from_word("numbers").unwrap().read(&object["b"]);
+        assert!(LineForm::from_word("m").unwrap().read(&object["a"]).unwrap().has_nan());
+        let numbers = LineForm::from_word("numbers").unwrap().read(&object["b"]);
         assert_eq!(numbers, Ok(Value::Numbers([f64::NEG_INFINITY, f64::INFINITY].into())));
         assert_eq!(object["NaN"], json!("\" NaN"));
-        assert_eq!(Form::from_word("m").unwrap().write(&Value::Length(Meters(f64::INFINITY))), Json::Null);
+        assert_eq!(LineForm::from_word("m").unwrap().write(&Value::Length(Meters(f64::INFINITY))), Json::Null);
     }
 }

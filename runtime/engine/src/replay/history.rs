@@ -11,14 +11,14 @@ use crate::board::{Board, Post};
 #[derive(Debug, Default)]
 pub(crate) struct History {
     /// Attributes that the record contains, by number; `None` for a removed attribute.
-    known: Vec<Option<Known>>,
+    known: Vec<Option<RecordedAttribute>>,
     /// Changes of the current turn.
     changes: Vec<RecordedChange>,
 }
 
 /// An attribute that the record contains.
 #[derive(Debug)]
-struct Known {
+struct RecordedAttribute {
     name: AttributeName,
     kind: AttributeKind,
     /// Time and bits of the last recorded value; `None` before the first.
@@ -77,7 +77,7 @@ impl History {
     /// Records which attributes were removed from the board, including attributes that were added again afterwards.
     fn forget(&mut self, board: &Board) {
         for (number, known) in (0..).zip(&mut self.known) {
-            let has_gone = |known: &mut Known| {
+            let has_gone = |known: &mut RecordedAttribute| {
                 let post = board.post(&known.name.module, &known.name.attribute);
                 post.is_none_or(|post| {
                     post.about.kind != known.kind || post.reading.is_none() && known.reading.is_some()
@@ -91,12 +91,12 @@ impl History {
 
     /// Records an attribute if it or its value is new.
     fn see(&mut self, post: &Post) {
-        let is_same = |known: &Option<Known>| known.as_ref().is_some_and(|known| known.name == post.name);
+        let is_same = |known: &Option<RecordedAttribute>| known.as_ref().is_some_and(|known| known.name == post.name);
         let number = self.known.iter().position(is_same).unwrap_or_else(|| {
             let (name, kind) = (post.name.clone(), post.about.kind);
             let (module, attribute) = (name.module.to_string(), name.attribute.to_string());
             self.changes.push(RecordedChange::Attribute { module, name: attribute, kind: kind.number() });
-            self.known.push(Some(Known { name, kind, reading: None }));
+            self.known.push(Some(RecordedAttribute { name, kind, reading: None }));
             self.known.len() - 1
         });
         let reading = post.reading.as_ref().map(|reading| (reading.at, reading.value.bits()));

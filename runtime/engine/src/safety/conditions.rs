@@ -12,7 +12,7 @@ use mdle_compiler::load::{self, LoadError, Loaded, LoadedPlan};
 use mdle_runtime as runtime;
 use mdle_runtime::{Machine, ModuleRead, Nanos, PUBLISHED, Plan as _};
 
-use super::{Condition, Guard};
+use super::{ConditionText, Guard};
 
 /// Conditions of the guards in a safety file.
 pub struct Conditions<A: runtime::Alphabet> {
@@ -23,7 +23,7 @@ pub struct Conditions<A: runtime::Alphabet> {
 }
 
 /// Conditions of guards during a run, which are evaluated in each turn.
-pub struct Watched<A: runtime::Alphabet> {
+pub struct WatchedConditions<A: runtime::Alphabet> {
     loaded: Vec<Arc<Loaded<A>>>,
     /// For each condition, a plan that never leaves its first atom; empty before the first output.
     machines: Vec<Machine<LoadedPlan<A>>>,
@@ -48,9 +48,9 @@ impl<A: runtime::Alphabet> fmt::Debug for Conditions<A> {
     }
 }
 
-impl<A: runtime::Alphabet> fmt::Debug for Watched<A> {
+impl<A: runtime::Alphabet> fmt::Debug for WatchedConditions<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Watched").field("fired", &self.fired).finish_non_exhaustive()
+        f.debug_struct("WatchedConditions").field("fired", &self.fired).finish_non_exhaustive()
     }
 }
 
@@ -94,8 +94,8 @@ impl<A: runtime::Alphabet> Conditions<A> {
 
     /// Returns the conditions for a run that has no output yet.
     #[must_use]
-    pub fn watch(&self) -> Watched<A> {
-        Watched { loaded: self.loaded.clone(), machines: Vec::new(), fired: Vec::new() }
+    pub fn watch(&self) -> WatchedConditions<A> {
+        WatchedConditions { loaded: self.loaded.clone(), machines: Vec::new(), fired: Vec::new() }
     }
 
     /// Returns the module attributes that the conditions read.
@@ -105,7 +105,7 @@ impl<A: runtime::Alphabet> Conditions<A> {
     }
 }
 
-impl<A: runtime::Alphabet> Watched<A> {
+impl<A: runtime::Alphabet> WatchedConditions<A> {
     /// Returns, for each guard, `true` if its condition is true for the output `y`.
     pub fn fired(&mut self, y: &A::Output, t: Nanos) -> &[bool] {
         let Self { loaded, machines, fired } = self;
@@ -122,7 +122,7 @@ impl<A: runtime::Alphabet> Watched<A> {
 /// condition and its warnings.
 fn compiled<A: runtime::Alphabet>(
     file: SourceId,
-    condition: &Condition,
+    condition: &ConditionText,
     sources: &mut Sources,
     alphabet: &alphabet::Alphabet,
 ) -> Result<(Arc<Loaded<A>>, Vec<Diagnostic>), GuardError> {
@@ -130,7 +130,7 @@ fn compiled<A: runtime::Alphabet>(
     let plan = format!("{BEFORE}{}\n) (Atom (wait inf) stop) }}\n", condition.text);
     let source = sources.add(format!("line {line}"), plan.as_str());
     let (plans, diagnostics) = mdle_compiler::compile(source, &plan, alphabet, None);
-    let placed = Placed { file, plan: source, condition, sources };
+    let placed = PlacedCondition { file, plan: source, condition, sources };
     let mut warnings: Vec<_> = diagnostics.into_iter().filter_map(|diagnostic| placed.moved(diagnostic)).collect();
     let machine = match plans.as_slice() {
         _ if has_errors(&warnings) => {
@@ -154,14 +154,14 @@ fn compiled<A: runtime::Alphabet>(
 const BEFORE: &str = "{ Guard (";
 
 /// A condition, with the plan that is generated for it and the safety file that contains it.
-struct Placed<'c> {
+struct PlacedCondition<'c> {
     file: SourceId,
     plan: SourceId,
-    condition: &'c Condition,
+    condition: &'c ConditionText,
     sources: &'c Sources,
 }
 
-impl Placed<'_> {
+impl PlacedCondition<'_> {
     /// Converts a diagnostic about the generated plan to a diagnostic about the safety file. Returns `None` for a
     /// warning that is not about the condition.
     fn moved(&self, mut diagnostic: Diagnostic) -> Option<Diagnostic> {
@@ -184,7 +184,7 @@ impl Placed<'_> {
 
     /// Converts a span in the generated plan to the corresponding span in the safety file.
     fn in_file(&self, span: Span) -> Span {
-        let Condition { text, bytes, .. } = self.condition;
+        let ConditionText { text, bytes, .. } = self.condition;
         let (source, Range { start, end }) = self.sources.range(span);
         if source != self.plan {
             return span;

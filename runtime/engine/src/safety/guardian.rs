@@ -7,13 +7,13 @@ use mdle_record::RecordedChange;
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{Alphabet, Nanos, Plan, Twist};
 
-use super::{Conditions, Envelope, Limits, Measure, Rules, Watched};
+use super::{Conditions, Envelope, Limits, Measure, Rules, WatchedConditions};
 
 /// Supervisor of one run: an envelope with the conditions of its guards.
 #[derive(Debug)]
 pub struct Guardian<A: Alphabet> {
     envelope: Envelope,
-    conditions: Watched<A>,
+    conditions: WatchedConditions<A>,
     /// `true` once the robot's start pose has been compared with the fences.
     has_begun: bool,
     /// Warnings that have not been reported yet.

@@ -5,8 +5,8 @@ use mdle_runtime::{Nanos, Printable};
 use toml::de::{DeTable, DeValue};
 
 use super::error::RulesError;
-use super::section::{Section, Value, kind, line};
-use super::{Condition, Fence, Guard, Limits, Measure, PlanEntry, Rules, Then};
+use super::section::{Section, TomlValue, kind, line};
+use super::{ConditionText, Fence, Guard, Limits, Measure, PlanEntry, Rules, Then};
 
 /// Tables that a safety file may contain.
 const TABLES: [&str; 6] = ["limits", "fence", "contact", "stale", "overrun", "guards"];
@@ -21,7 +21,7 @@ pub fn read(text: &str) -> Result<Rules, RulesError> {
         message: error.message().replace('\n', "; "),
     })?;
     let file = Section::of_file(text, parsed.get_ref()).only(&TABLES)?;
-    let mut reading = Reading { file, rules: Rules::default() };
+    let mut reading = SafetyReader { file, rules: Rules::default() };
     for (key, value) in file.entries() {
         match &**key.get_ref() {
             "limits" => reading.limits(value)?,
@@ -60,13 +60,13 @@ const ALL: [&str; 4] = ["hold", "hold forward", "end", "retreat.mdle"];
 /// Words for the consequences of a rule that cannot divert to another plan.
 const HOLD_OR_END: [&str; 2] = ["hold", "end"];
 
-struct Reading<'t, 'i> {
+struct SafetyReader<'t, 'i> {
     file: Section<'t, 'i>,
     rules: Rules,
 }
 
-impl<'t, 'i> Reading<'t, 'i> {
-    fn limits(&mut self, value: &'t Value<'i>) -> Result<(), RulesError> {
+impl<'t, 'i> SafetyReader<'t, 'i> {
+    fn limits(&mut self, value: &'t TomlValue<'i>) -> Result<(), RulesError> {
         let section = self.file.table("limits", value)?.only(&Measure::ALL.map(Measure::key))?;
         let mut limits = Limits::default();
         for measure in Measure::ALL {
@@ -78,7 +78,7 @@ impl<'t, 'i> Reading<'t, 'i> {
         Ok(())
     }
 
-    fn fences(&mut self, value: &'t Value<'i>) -> Result<(), RulesError> {
+    fn fences(&mut self, value: &'t TomlValue<'i>) -> Result<(), RulesError> {
         let Some(fences) = value.get_ref().as_array() else {
             let message = format!("write `[[fence]]`, as there may be several; found: {}", kind(value.get_ref()));
             return Err(self.file.error(value, message));
@@ -102,7 +102,7 @@ impl<'t, 'i> Reading<'t, 'i> {
         Ok(())
     }
 
-    fn guards(&mut self, value: &'t Value<'i>) -> Result<(), RulesError> {
+    fn guards(&mut self, value: &'t TomlValue<'i>) -> Result<(), RulesError> {
         let guards = self.file.table("guards", value)?;
         for (key, value) in guards.entries() {
             let name = key.get_ref();
@@ -119,7 +119,7 @@ impl<'t, 'i> Reading<'t, 'i> {
             let when = section.needed("when", "\"r0 < 20cm AND v > 5cm/s\"")?;
             let text = section.text("when", when, "\"r0 < 20cm AND v > 5cm/s\"")?;
             let (line, bytes) = section.place(&when.span(), text);
-            let when = Condition { text: text.to_owned(), line, bytes };
+            let when = ConditionText { text: text.to_owned(), line, bytes };
             let then = self.then(section, &ALL)?;
             self.rules.guards.push(Guard { name: name.to_string(), when, then });
         }
@@ -159,21 +159,21 @@ const RESERVED: [&str; 8] =
     ["stale", "stale_module", "overrun", "contact", "speed", "turn_rate", "acceleration", "fence"];
 
 /// Reads the corners of a fence.
-fn corners(section: Section<'_, '_>, value: &Value<'_>) -> Result<Vec<[f64; 2]>, RulesError> {
-    let wrong = |place: &Value<'_>, what: &str| {
+fn corners(section: Section<'_, '_>, value: &TomlValue<'_>) -> Result<Vec<[f64; 2]>, RulesError> {
+    let wrong = |place: &TomlValue<'_>, what: &str| {
         section.error(place, format!("{what}, as in `inside = [[0, 0], [2, 0], [2, 1], [0, 1]]`, in metres"))
     };
     let Some(points) = value.get_ref().as_array().filter(|points| points.len() >= 3) else {
         return Err(wrong(value, "`inside` has to be a list of three corners or more"));
     };
-    let number = |value: &Value<'_>| match value.get_ref() {
+    let number = |value: &TomlValue<'_>| match value.get_ref() {
         DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
         DeValue::Float(number) => number.as_str().parse().ok(),
         DeValue::Integer(_) | DeValue::String(_) | DeValue::Boolean(_) | DeValue::Datetime(_) => None,
         DeValue::Array(_) | DeValue::Table(_) => None,
     };
-    let number = |value: &Value<'_>| number(value).filter(|number: &f64| number.abs() <= 1e6);
-    let corner = |point: &Value<'_>| {
+    let number = |value: &TomlValue<'_>| number(value).filter(|number: &f64| number.abs() <= 1e6);
+    let corner = |point: &TomlValue<'_>| {
         let pair = point.get_ref().as_array().filter(|pair| pair.len() == 2);
         let [x, y] = [0, 1].map(|axis| number(pair?.get(axis)?));
         x.zip(y).map(|(x, y)| [x, y]).ok_or_else(|| wrong(point, "a corner has to be two numbers"))

@@ -62,14 +62,14 @@ pub struct Guard {
     /// Name of the guard.
     pub name: String,
     /// Condition on the output.
-    pub when: Condition,
+    pub when: ConditionText,
     /// Consequence while the condition is true.
     pub then: Then,
 }
 
 /// Text of a condition, and its place in the safety file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Condition {
+pub struct ConditionText {
     /// Text in the plan language.
     pub text: String,
     /// Line of the text, from 1.

@@ -13,9 +13,9 @@ use toml::de::{DeTable, DeValue};
 use super::error::RulesError;
 
 /// A key in the representation of the TOML parser.
-pub(super) type Key<'i> = Spanned<Cow<'i, str>>;
+pub(super) type TomlKey<'i> = Spanned<Cow<'i, str>>;
 /// A value in the representation of the TOML parser.
-pub(super) type Value<'i> = Spanned<DeValue<'i>>;
+pub(super) type TomlValue<'i> = Spanned<DeValue<'i>>;
 
 /// A table of a safety file.
 #[derive(Clone, Copy)]
@@ -50,19 +50,19 @@ impl<'t, 'i> Section<'t, 'i> {
     }
 
     /// Returns the entries sorted by line.
-    pub(super) fn entries(self) -> impl Iterator<Item = (&'t Key<'i>, &'t Value<'i>)> {
+    pub(super) fn entries(self) -> impl Iterator<Item = (&'t TomlKey<'i>, &'t TomlValue<'i>)> {
         let mut entries: Vec<_> = self.table.iter().collect();
         entries.sort_by_key(|(key, _)| key.span().start);
         entries.into_iter()
     }
 
     /// Returns the value of a key; `None` if the table does not have the key.
-    pub(super) fn get(self, key: &str) -> Option<&'t Value<'i>> {
+    pub(super) fn get(self, key: &str) -> Option<&'t TomlValue<'i>> {
         self.table.get(key)
     }
 
     /// Returns the value of a required key; `example` is shown in the error message.
-    pub(super) fn needed(self, key: &str, example: &str) -> Result<&'t Value<'i>, RulesError> {
+    pub(super) fn needed(self, key: &str, example: &str) -> Result<&'t TomlValue<'i>, RulesError> {
         let missing = || RulesError {
             line: line(self.text, self.place),
             message: format!("`{}` needs `{key}`, as in `{key} = {example}`", self.name),
@@ -71,7 +71,7 @@ impl<'t, 'i> Section<'t, 'i> {
     }
 
     /// Returns the value of the key `name`, which must be a table.
-    pub(super) fn table(self, name: &'t str, value: &'t Value<'i>) -> Result<Section<'t, 'i>, RulesError> {
+    pub(super) fn table(self, name: &'t str, value: &'t TomlValue<'i>) -> Result<Section<'t, 'i>, RulesError> {
         let found = value.get_ref();
         let within = if self.name.is_empty() { String::new() } else { format!("{}.", self.name) };
         let message =
@@ -81,7 +81,7 @@ impl<'t, 'i> Section<'t, 'i> {
     }
 
     /// Returns a value that must be text; `example` is shown in the error message.
-    pub(super) fn text(self, key: &str, value: &'t Value<'i>, example: &str) -> Result<&'t str, RulesError> {
+    pub(super) fn text(self, key: &str, value: &'t TomlValue<'i>, example: &str) -> Result<&'t str, RulesError> {
         let found = value.get_ref();
         let message = || format!("`{key}` has to be text, as in `{key} = {example}`; found: {}", kind(found));
         found.as_str().ok_or_else(|| self.error(value, message()))
@@ -91,7 +91,7 @@ impl<'t, 'i> Section<'t, 'i> {
     pub(super) fn quantity(
         self,
         key: &str,
-        value: &'t Value<'i>,
+        value: &'t TomlValue<'i>,
         (quantity, unit): (Quantity, &str),
         may_be_none: bool,
     ) -> Result<f64, RulesError> {
@@ -122,14 +122,14 @@ impl<'t, 'i> Section<'t, 'i> {
     }
 
     /// Returns a time above 0.
-    pub(super) fn time(self, key: &str, value: &'t Value<'i>) -> Result<Duration, RulesError> {
+    pub(super) fn time(self, key: &str, value: &'t TomlValue<'i>) -> Result<Duration, RulesError> {
         let seconds = self.quantity(key, value, (Quantity::Time, "s"), false)?;
         let time = Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero());
         time.ok_or_else(|| self.error(value, format!("`{key}` has to be a time from 1ns to 100 years")))
     }
 
     /// Returns an integer that is at least 1.
-    pub(super) fn count(self, key: &str, value: &'t Value<'i>) -> Result<u64, RulesError> {
+    pub(super) fn count(self, key: &str, value: &'t TomlValue<'i>) -> Result<u64, RulesError> {
         let found = value.get_ref();
         let number = found.as_integer().and_then(|number| u64::from_str_radix(number.as_str(), number.radix()).ok());
         number.filter(|number| *number > 0).ok_or_else(|| {

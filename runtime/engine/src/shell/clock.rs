@@ -6,12 +6,12 @@ use mdle_host::{Break, Lateness, Pace, Pilot, Time};
 use mdle_quantity::Quantity;
 use mdle_runtime::Nanos;
 
-use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
+use crate::tree::{Answer, Change, Node, Reply, Role, Served, Value, ValueKind, read};
 
 /// Kind of attributes in seconds.
-const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
+const SECONDS: ValueKind = ValueKind::Quantity(Quantity::Time, "s");
 /// Kind of attributes in milliseconds.
-const MILLISECONDS: Kind = Kind::Quantity(Quantity::Time, "ms");
+const MILLISECONDS: ValueKind = ValueKind::Quantity(Quantity::Time, "ms");
 
 /// The clock of a session.
 #[derive(Debug)]
@@ -77,7 +77,7 @@ impl SessionClock {
     fn step<B: Pilot>(&mut self, arguments: &[String], moment: &Break<'_, B>, reply: Reply) {
         let count = match arguments {
             [] => Ok(1),
-            [count] => match read(count, Kind::Integer) {
+            [count] => match read(count, ValueKind::Integer) {
                 Ok(Value::Integer(count @ 1..)) => Ok(count.unsigned_abs()),
                 Ok(_) => Err("`step` takes a number of turns from 1".to_owned()),
                 Err(refusal) => Err(format!("`step`: {refusal}")),
@@ -150,17 +150,17 @@ impl<B: Pilot> Served<Break<'_, B>> for SessionClock {
     fn nodes(&self, _: &Break<'_, B>) -> Vec<(String, Node)> {
         let nodes = [
             ("now", Node::reading(SECONDS, "time of the last turn")),
-            ("turns", Node::reading(Kind::Integer, "number of turns that have been made")),
+            ("turns", Node::reading(ValueKind::Integer, "number of turns that have been made")),
             ("period", Node::reading(SECONDS, "time from the start of a turn to the start of the next")),
             (
                 "pace",
-                Node::setting(Kind::Text, Role::Tune, "pace of simulated time: a multiple of real time, or `max`"),
+                Node::setting(ValueKind::Text, Role::Tune, "pace of simulated time: a multiple of real time, or `max`"),
             ),
-            ("state", Node::reading(Kind::Text, "`runs` or `stands`")),
+            ("state", Node::reading(ValueKind::Text, "`runs` or `stands`")),
             ("late/p50", Node::reading(MILLISECONDS, "half of the turns of a real robot began at most this late")),
             ("late/p99", Node::reading(MILLISECONDS, "99 of 100 turns of a real robot began at most this late")),
             ("late/max", Node::reading(MILLISECONDS, "maximum time by which a turn of a real robot began late")),
-            ("missed", Node::reading(Kind::Integer, "number of turns that the turn before them left no time for")),
+            ("missed", Node::reading(ValueKind::Integer, "number of turns that the turn before them left no time for")),
             ("pause", Node::method(Role::Tune, "stops simulated time after this turn")),
             ("resume", Node::method(Role::Tune, "lets simulated time go on")),
             ("step", Node::method(Role::Tune, "makes one turn, or as many as the argument says, and stops the time")),

@@ -4,7 +4,7 @@ use crate::tree::{Change, Operation};
 
 /// A typed command.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Command {
+pub(super) enum ShellCommand {
     /// An empty line or a comment.
     Nothing,
     /// Perform an operation on the node or folder with this path.
@@ -50,10 +50,10 @@ pub(super) const COMMANDS: [(&str, &str, &str); 19] = [
 ///
 /// # Errors
 /// Fails with a sentence that explains what to type instead.
-pub(super) fn command(line: &str, here: &str) -> Result<Command, String> {
+pub(super) fn command(line: &str, here: &str) -> Result<ShellCommand, String> {
     let line = line.trim();
     if line.is_empty() || line.starts_with('#') {
-        return Ok(Command::Nothing);
+        return Ok(ShellCommand::Nothing);
     }
     let (name, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let rest = rest.trim();
@@ -68,28 +68,29 @@ pub(super) fn command(line: &str, here: &str) -> Result<Command, String> {
         arguments => Err(format!("`{name}` is used as `{name} {arguments}`")),
     };
     let words = || rest.split_whitespace().map(str::to_owned).collect();
-    let call = |path: &str, arguments| Ok(Command::Ask(path.to_owned(), Operation::Change(Change::Call(arguments))));
+    let call =
+        |path: &str, arguments| Ok(ShellCommand::Ask(path.to_owned(), Operation::Change(Change::Call(arguments))));
     let path = || path(first, here);
     match name {
         "pwd" | "pause" | "resume" | "quit" | "cancel" | "rollback" if !rest.is_empty() => usage(),
         "ls" | "cd" | "get" | "help" | "watch" | "unwatch" if !others.is_empty() => usage(),
         "get" | "call" | "set" | "pace" | "load_plan" | "swap" | "watch" | "unwatch" if first.is_empty() => usage(),
         "set" if others.trim().is_empty() => usage(),
-        "ls" => Ok(Command::Ask(path(), Operation::List)),
-        "cd" if first.is_empty() => Ok(Command::Enter("/".to_owned())),
-        "cd" => Ok(Command::Enter(path())),
-        "pwd" => Ok(Command::Here),
-        "get" => Ok(Command::Ask(path(), Operation::Get)),
-        "watch" | "unwatch" => Ok(Command::Ask(path(), Operation::Watch(name == "watch"))),
-        "set" => Ok(Command::Ask(path(), Operation::Change(Change::Set(others.trim().to_owned())))),
+        "ls" => Ok(ShellCommand::Ask(path(), Operation::List)),
+        "cd" if first.is_empty() => Ok(ShellCommand::Enter("/".to_owned())),
+        "cd" => Ok(ShellCommand::Enter(path())),
+        "pwd" => Ok(ShellCommand::Here),
+        "get" => Ok(ShellCommand::Ask(path(), Operation::Get)),
+        "watch" | "unwatch" => Ok(ShellCommand::Ask(path(), Operation::Watch(name == "watch"))),
+        "set" => Ok(ShellCommand::Ask(path(), Operation::Change(Change::Set(others.trim().to_owned())))),
         "call" => call(&path(), others.split_whitespace().map(str::to_owned).collect()),
         "help" => Ok(match COMMANDS.into_iter().find(|(known, ..)| *known == first) {
-            Some(command) => Command::Explain(command),
-            None => Command::Help((!first.is_empty()).then(path)),
+            Some(command) => ShellCommand::Explain(command),
+            None => ShellCommand::Help((!first.is_empty()).then(path)),
         }),
-        "pace" => Ok(Command::Ask("/clock/pace".to_owned(), Operation::Change(Change::Set(rest.to_owned())))),
-        "quit" => Ok(Command::Quit),
-        "swap" => Ok(Command::Swap(first.to_owned(), others.split_whitespace().map(str::to_owned).collect())),
+        "pace" => Ok(ShellCommand::Ask("/clock/pace".to_owned(), Operation::Change(Change::Set(rest.to_owned())))),
+        "quit" => Ok(ShellCommand::Quit),
+        "swap" => Ok(ShellCommand::Swap(first.to_owned(), others.split_whitespace().map(str::to_owned).collect())),
         "load_plan" | "cancel" | "rollback" => call(&format!("/usr/mdle/{name}"), words()),
         other => call(&format!("/clock/{other}"), words()),
     }
@@ -115,11 +116,11 @@ mod tests {
 
     #[test]
     fn a_line_becomes_a_request() {
-        let ask = |path: &str, operation| Ok(Command::Ask(path.to_owned(), operation));
-        assert_eq!(command("  # nothing", "/"), Ok(Command::Nothing));
+        let ask = |path: &str, operation| Ok(ShellCommand::Ask(path.to_owned(), operation));
+        assert_eq!(command("  # nothing", "/"), Ok(ShellCommand::Nothing));
         assert_eq!(command("ls", "/usr"), ask("/usr", Operation::List));
         assert_eq!(command("get ../clock/./now", "/usr"), ask("/clock/now", Operation::Get));
-        assert_eq!(command("cd ../../..", "/usr"), Ok(Command::Enter("/".to_owned())));
+        assert_eq!(command("cd ../../..", "/usr"), Ok(ShellCommand::Enter("/".to_owned())));
         let set = Operation::Change(Change::Set("a b".to_owned()));
         assert_eq!(command("set x\t a b ", "/"), ask("/x", set));
         let step = Operation::Change(Change::Call(vec!["3".to_owned()]));

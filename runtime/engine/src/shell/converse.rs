@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use mdle_runtime::PrintableLines;
 
-use super::command::{COMMANDS, Command, command};
+use super::command::{COMMANDS, ShellCommand, command};
 use super::{Lines, Typed};
-use crate::tree::{Access, Answer, Change, Hub, Kind, Node, Operation, Request, Role};
+use crate::tree::{Access, Answer, Change, Hub, Node, Operation, Request, Role, ValueKind};
 
 /// Maximum time for which a user at a terminal waits for a module that is being created.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -49,7 +49,7 @@ pub fn converse(
             let _ = writeln!(out, "> {}", PrintableLines(line));
         }
         let command = line.and_then(|line| command(&line, &here));
-        if command == Ok(Command::Quit) {
+        if command == Ok(ShellCommand::Quit) {
             break;
         }
         let mut asker = Asker { hub, conversation, out };
@@ -128,25 +128,25 @@ impl Asker<'_> {
     }
 
     /// Carries out a command.
-    fn carried_out(&mut self, command: Command, here: &mut String) -> Answer {
+    fn carried_out(&mut self, command: ShellCommand, here: &mut String) -> Answer {
         match command {
-            Command::Nothing | Command::Quit => Answer::Done(String::new()),
-            Command::Ask(path, operation) => self.ask(&path, operation),
-            Command::Here => Answer::Done(here.clone()),
-            Command::Help(None) => Answer::Done(COMMANDS.map(summary).join("\n")),
-            Command::Explain(command) => Answer::Done(summary(command)),
-            Command::Swap(name, moment) => {
+            ShellCommand::Nothing | ShellCommand::Quit => Answer::Done(String::new()),
+            ShellCommand::Ask(path, operation) => self.ask(&path, operation),
+            ShellCommand::Here => Answer::Done(here.clone()),
+            ShellCommand::Help(None) => Answer::Done(COMMANDS.map(summary).join("\n")),
+            ShellCommand::Explain(command) => Answer::Done(summary(command)),
+            ShellCommand::Swap(name, moment) => {
                 let path = format!("/plans/{name}/run");
                 let answer = self.ask(&path, Operation::Change(Change::Call(moment)));
                 let is_unknown = matches!(answer, Answer::Refused(_)) && self.hub.node(&path).is_none();
                 if is_unknown { Answer::Refused(self.no_plan(&name)) } else { answer }
             }
-            Command::Help(Some(path)) => match (self.ask(&path, Operation::List), self.hub.node(&path)) {
+            ShellCommand::Help(Some(path)) => match (self.ask(&path, Operation::List), self.hub.node(&path)) {
                 (Answer::Ended, _) => Answer::Ended,
                 (_, Some(node)) => Answer::Done(described(&path, &node)),
                 (answer, None) => answer,
             },
-            Command::Enter(path) => {
+            ShellCommand::Enter(path) => {
                 let answer = self.ask(&path, Operation::List);
                 match answer {
                     Answer::Entries(_) => {
@@ -171,14 +171,14 @@ fn summary((name, arguments, does): (&str, &str, &str)) -> String {
 /// Returns a line that describes a node.
 fn described(path: &str, node: &Node) -> String {
     let kind = match node.kind {
-        Kind::Flag => "true or false".to_owned(),
-        Kind::Integer => "a whole number".to_owned(),
-        Kind::Number => "a number".to_owned(),
-        Kind::Pose => "two lengths and an angle".to_owned(),
-        Kind::Numbers => "numbers".to_owned(),
-        Kind::Bytes => "bytes, as hexadecimal digits".to_owned(),
-        Kind::Quantity(_, unit) => format!("in {unit}"),
-        Kind::Text => "text".to_owned(),
+        ValueKind::Flag => "true or false".to_owned(),
+        ValueKind::Integer => "a whole number".to_owned(),
+        ValueKind::Number => "a number".to_owned(),
+        ValueKind::Pose => "two lengths and an angle".to_owned(),
+        ValueKind::Numbers => "numbers".to_owned(),
+        ValueKind::Bytes => "bytes, as hexadecimal digits".to_owned(),
+        ValueKind::Quantity(_, unit) => format!("in {unit}"),
+        ValueKind::Text => "text".to_owned(),
     };
     let role = node.role.name();
     let access = match node.access {

@@ -35,12 +35,12 @@ pub enum Typed {
 
 /// Lines of a file or a pipe. A line that ends with `\` continues on the next line.
 #[derive(Debug)]
-pub struct Input<R> {
+pub struct FileLines<R> {
     from: R,
     number: usize,
 }
 
-impl<R: BufRead> Input<R> {
+impl<R: BufRead> FileLines<R> {
     /// Returns the lines of a reader.
     pub fn new(from: R) -> Self {
         Self { from, number: 0 }
@@ -65,7 +65,7 @@ impl<R: BufRead> Input<R> {
     }
 }
 
-impl<R: BufRead> Lines for Input<R> {
+impl<R: BufRead> Lines for FileLines<R> {
     fn next(&mut self, _: &str) -> Typed {
         let mut text = String::new();
         loop {
@@ -100,12 +100,12 @@ impl<R: BufRead> Lines for Input<R> {
 pub type PrintAbove = dyn FnMut(&str) -> io::Result<()> + Send;
 
 /// Lines that a user types at a terminal, with completion of paths. Ctrl-C and Ctrl-D end them.
-pub struct Terminal {
-    editor: Editor<Completion, rustyline::history::MemHistory>,
+pub struct TerminalLines {
+    editor: Editor<ShellCompletion, rustyline::history::MemHistory>,
     number: usize,
 }
 
-impl Terminal {
+impl TerminalLines {
     /// Returns the lines that are typed at the terminal of this process, and a function that prints above the line that
     /// is being typed.
     ///
@@ -115,14 +115,14 @@ impl Terminal {
         let history = rustyline::history::MemHistory::new();
         let editor = Editor::with_history(Config::builder().build(), history);
         let mut editor = editor.map_err(io::Error::other)?;
-        editor.set_helper(Some(Completion { hub, here: "/".to_owned() }));
+        editor.set_helper(Some(ShellCompletion { hub, here: "/".to_owned() }));
         let mut printer = editor.create_external_printer().map_err(io::Error::other)?;
         let print = move |text: &str| printer.print(text.to_owned()).map_err(io::Error::other);
         Ok((Self { editor, number: 0 }, Box::new(print)))
     }
 }
 
-impl Lines for Terminal {
+impl Lines for TerminalLines {
     fn next(&mut self, here: &str) -> Typed {
         self.number += 1;
         if let Some(helper) = self.editor.helper_mut() {
@@ -144,12 +144,12 @@ impl Lines for Terminal {
 }
 
 /// Completion of commands and paths.
-struct Completion {
+struct ShellCompletion {
     hub: Hub,
     here: String,
 }
 
-impl Completer for Completion {
+impl Completer for ShellCompletion {
     type Candidate = String;
 
     fn complete(&self, line: &str, place: usize, _: &Context<'_>) -> rustyline::Result<(usize, Vec<String>)> {
@@ -169,19 +169,19 @@ impl Completer for Completion {
     }
 }
 
-impl Hinter for Completion {
+impl Hinter for ShellCompletion {
     type Hint = String;
 }
-impl Highlighter for Completion {}
-impl Validator for Completion {}
-impl Helper for Completion {}
+impl Highlighter for ShellCompletion {}
+impl Validator for ShellCompletion {}
+impl Helper for ShellCompletion {}
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn lines(text: &[u8]) -> Vec<Typed> {
-        let mut input = Input::new(text);
+        let mut input = FileLines::new(text);
         let lines = std::iter::from_fn(|| Some(input.next("/")).filter(|typed| *typed != Typed::End));
         lines.take(100).collect()
     }

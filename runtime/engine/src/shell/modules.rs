@@ -12,13 +12,13 @@ use crate::board::Post;
 use crate::engine::{Engine, HoldEffect, ModuleState};
 use crate::module::{About, PLAN, Refusal};
 use crate::plans::EngineAlphabet;
-use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
+use crate::tree::{Answer, Change, Node, Reply, Role, Served, Value, ValueKind, read};
 
 /// Reading of the time that a module takes.
 pub(super) const COST: (&str, Node) = (
     ".cost",
     Node::reading(
-        Kind::Quantity(Quantity::Time, "ms"),
+        ValueKind::Quantity(Quantity::Time, "ms"),
         "mean time that the last turns of the module took, in real time",
     ),
 );
@@ -27,16 +27,19 @@ pub(super) const COST: (&str, Node) = (
 const OWN: [(&str, Node); 9] = [
     (
         ".state",
-        Node::reading(Kind::Text, "state of the module: `active`, `stopped`, `late`, `given up`, `failed`, `ended`"),
+        Node::reading(
+            ValueKind::Text,
+            "state of the module: `active`, `stopped`, `late`, `given up`, `failed`, `ended`",
+        ),
     ),
-    (".late", Node::reading(Kind::Integer, "number of turns that ended without the module because it was late")),
+    (".late", Node::reading(ValueKind::Integer, "number of turns that ended without the module because it was late")),
     COST,
-    (".reads", Node::reading(Kind::Text, "attributes of other modules that the module reads")),
+    (".reads", Node::reading(ValueKind::Text, "attributes of other modules that the module reads")),
     (
         ".priority",
-        Node::reading(Kind::Integer, "priority of the module: modules of higher priority begin their turns first"),
+        Node::reading(ValueKind::Integer, "priority of the module: modules of higher priority begin their turns first"),
     ),
-    (".fault", Node::reading(Kind::Text, "reason why the module failed or was given up")),
+    (".fault", Node::reading(ValueKind::Text, "reason why the module failed or was given up")),
     (".start", Node::method(Role::Admin, "lets the module make turns again")),
     (".stop", Node::method(Role::Admin, "stops the module until it is started")),
     (".unload", Node::method(Role::Admin, "unloads the module; its attributes vanish")),
@@ -200,16 +203,16 @@ fn state_text(state: ModuleState) -> &'static str {
 }
 
 /// Returns the kind of an attribute in the tree; a quantity has the unit that the attribute's description names.
-fn kind(about: &About) -> Kind {
+fn kind(about: &About) -> ValueKind {
     let quantity = about.unit.and_then(|unit| Some((Quantity::of_unit(unit.name)?.0, unit.name)));
     match (about.kind, quantity) {
-        (_, Some((quantity, unit))) => Kind::Quantity(quantity, unit),
-        (AttributeKind::Flag, None) => Kind::Flag,
-        (AttributeKind::Integer, None) => Kind::Integer,
-        (AttributeKind::Text, None) => Kind::Text,
-        (AttributeKind::Pose, None) => Kind::Pose,
-        (AttributeKind::Numbers, None) => Kind::Numbers,
-        (AttributeKind::Bytes, None) => Kind::Bytes,
+        (_, Some((quantity, unit))) => ValueKind::Quantity(quantity, unit),
+        (AttributeKind::Flag, None) => ValueKind::Flag,
+        (AttributeKind::Integer, None) => ValueKind::Integer,
+        (AttributeKind::Text, None) => ValueKind::Text,
+        (AttributeKind::Pose, None) => ValueKind::Pose,
+        (AttributeKind::Numbers, None) => ValueKind::Numbers,
+        (AttributeKind::Bytes, None) => ValueKind::Bytes,
         (
             AttributeKind::Number
             | AttributeKind::Length
@@ -219,7 +222,7 @@ fn kind(about: &About) -> Kind {
             | AttributeKind::Voltage
             | AttributeKind::Time,
             None,
-        ) => Kind::Number,
+        ) => ValueKind::Number,
     }
 }
 

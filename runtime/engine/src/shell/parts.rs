@@ -6,7 +6,7 @@ use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
 use mdle_runtime::{Alphabet, Plan, SonarId, Twist};
 
 use crate::safety::{Guardian, Limits, Measure};
-use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
+use crate::tree::{Answer, Change, Node, Reply, Role, Served, Value, ValueKind, read};
 
 /// `/usr/robot`: the robot's latest output and next input.
 #[derive(Debug)]
@@ -23,10 +23,10 @@ pub(super) struct EnginePart {
     pub(super) quits: bool,
 }
 
-const METRES: Kind = Kind::Quantity(Quantity::Length, "m");
-const DEGREES: Kind = Kind::Quantity(Quantity::Angle, "deg");
-const SPEED: Kind = Kind::Quantity(Quantity::Speed, "m/s");
-const TURN_RATE: Kind = Kind::Quantity(Quantity::TurnRate, "deg/s");
+const METRES: ValueKind = ValueKind::Quantity(Quantity::Length, "m");
+const DEGREES: ValueKind = ValueKind::Quantity(Quantity::Angle, "deg");
+const SPEED: ValueKind = ValueKind::Quantity(Quantity::Speed, "m/s");
+const TURN_RATE: ValueKind = ValueKind::Quantity(Quantity::TurnRate, "deg/s");
 
 impl<B> Served<Break<'_, B>> for RobotPart
 where
@@ -39,7 +39,7 @@ where
             ("theta", Node::reading(DEGREES, "heading by odometry")),
             ("v", Node::reading(SPEED, "measured forward speed")),
             ("omega", Node::reading(TURN_RATE, "measured turn rate")),
-            ("bumper", Node::reading(Kind::Flag, "`true` if any bumper is in contact")),
+            ("bumper", Node::reading(ValueKind::Flag, "`true` if any bumper is in contact")),
             ("input/v", Node::reading(SPEED, "forward speed that the robot is sent next")),
             ("input/omega", Node::reading(TURN_RATE, "turn rate that the robot is sent next")),
         ];
@@ -49,7 +49,7 @@ where
         let settings = moment.settings.as_ref().map_or(&[][..], |settings| settings.settings());
         let settings = settings
             .iter()
-            .map(|(name, doc)| (format!("/usr/robot/{name}"), Node::setting(Kind::Text, Role::Tune, doc)));
+            .map(|(name, doc)| (format!("/usr/robot/{name}"), Node::setting(ValueKind::Text, Role::Tune, doc)));
         own.into_iter().chain(ranges).chain(settings).collect()
     }
 
@@ -102,15 +102,15 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
     fn nodes(&self, _: &Break<'_, B>) -> Vec<(String, Node)> {
         let limits = Measure::ALL.map(|measure| {
             let (quantity, unit) = measure.quantity();
-            let node = Node::setting(Kind::Quantity(quantity, unit), Role::Admin, "limit of inputs");
+            let node = Node::setting(ValueKind::Quantity(quantity, unit), Role::Admin, "limit of inputs");
             (format!("/safety/limits/{}", measure.key()), node)
         });
         let reset = Node::method(Role::Admin, "takes the limits of the safety file, and lets all rules apply again");
         let own = limits.into_iter().chain([(RESET.to_owned(), reset)]);
         let Some(envelope) = self.0.as_ref().map(Guardian::envelope) else { return own.collect() };
-        let count = Node::reading(Kind::Integer, "number of turns in which the rule has decided");
-        let when = Node::reading(Kind::Text, "condition of the guard");
-        let then = Node::reading(Kind::Text, "consequence of the rule, in the words of a safety file");
+        let count = Node::reading(ValueKind::Integer, "number of turns in which the rule has decided");
+        let when = Node::reading(ValueKind::Text, "condition of the guard");
+        let then = Node::reading(ValueKind::Text, "consequence of the rule, in the words of a safety file");
         let rules = envelope.counts().flat_map(|(id, _)| {
             let own = [
                 Some(("count", count)),
@@ -157,7 +157,7 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
             return reply.answer(Answer::Refused(format!("`{path}` is read-only")));
         };
         let (quantity, unit) = measure.quantity();
-        reply.answer(match read(text, Kind::Quantity(quantity, unit)) {
+        reply.answer(match read(text, ValueKind::Quantity(quantity, unit)) {
             Ok(Value::Quantity(value, _)) if value > 0.0 => {
                 *measure.of(&mut guardian.envelope_mut().rules_mut().limits) = measure.in_si(value);
                 Answer::Done(String::new())
@@ -171,7 +171,7 @@ impl<A: Alphabet, B: Pilot> Served<Break<'_, B>> for SafetyPart<A> {
 impl<B: Pilot> Served<Break<'_, B>> for EnginePart {
     fn nodes(&self, _: &Break<'_, B>) -> Vec<(String, Node)> {
         vec![
-            ("/engine/version".to_owned(), Node::reading(Kind::Text, "version of the program")),
+            ("/engine/version".to_owned(), Node::reading(ValueKind::Text, "version of the program")),
             ("/engine/quit".to_owned(), Node::method(Role::Admin, "stops the robot and ends the session")),
         ]
     }

@@ -14,27 +14,31 @@ use crate::Engine;
 use crate::attribute::AttributeName;
 use crate::module::PLAN;
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
-use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
+use crate::tree::{Answer, Change, Node, Reply, Role, Served, Value, ValueKind, read};
 
 /// Answer to a request whose plan was armed, but replaced before it took over.
 const TAKEN: &str = "another plan takes its place";
-const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
+const SECONDS: ValueKind = ValueKind::Quantity(Quantity::Time, "s");
 
 /// Attributes of `/usr/mdle`, in the order of [`Served::values`].
 const OWN: [(&str, Node); 14] = [
     (
         "main",
-        Node::setting(Kind::Text, Role::Swap, "name of the plan that drives; a stored plan, or a text, replaces it"),
+        Node::setting(
+            ValueKind::Text,
+            Role::Swap,
+            "name of the plan that drives; a stored plan, or a text, replaces it",
+        ),
     ),
-    ("armed", Node::reading(Kind::Text, "plan that is to follow, and when")),
-    ("on_trial", Node::reading(Kind::Flag, "`true` while `rollback` leads back to the plan before")),
+    ("armed", Node::reading(ValueKind::Text, "plan that is to follow, and when")),
+    ("on_trial", Node::reading(ValueKind::Flag, "`true` while `rollback` leads back to the plan before")),
     ("trial", Node::setting(SECONDS, Role::Swap, "time for which a plan that takes over is on trial")),
     COST,
-    ("atom", Node::reading(Kind::Text, "law of the current atom")),
-    ("place", Node::reading(Kind::Text, "place of the atom: file, line, and the scopes around it")),
-    ("since", Node::reading(Kind::Text, "why the atom runs")),
-    ("state", Node::reading(Kind::Integer, "number of the state in the expanded plan, from 1")),
-    ("scopes", Node::reading(Kind::Text, "conditions of the scopes around the atom, the plan's first")),
+    ("atom", Node::reading(ValueKind::Text, "law of the current atom")),
+    ("place", Node::reading(ValueKind::Text, "place of the atom: file, line, and the scopes around it")),
+    ("since", Node::reading(ValueKind::Text, "why the atom runs")),
+    ("state", Node::reading(ValueKind::Integer, "number of the state in the expanded plan, from 1")),
+    ("scopes", Node::reading(ValueKind::Text, "conditions of the scopes around the atom, the plan's first")),
     ("t", Node::reading(SECONDS, "time since the plan began")),
     ("load_plan", Node::method(Role::Swap, "compiles the plans of a file or of a text, and stores them")),
     ("cancel", Node::method(Role::Swap, "takes back a plan that has not taken over yet")),
@@ -44,14 +48,14 @@ const OWN: [(&str, Node); 14] = [
 /// Plans, with the requests about them that are not answered yet.
 #[derive(Debug, Default)]
 pub(super) struct PlansPart {
-    waiting: Vec<Waiting>,
+    waiting: Vec<WaitingRequest>,
     /// Armed plans of this session, each with the number of its request and its name.
     armed: Vec<(u32, String)>,
 }
 
 /// A request that waits for the compiler.
 #[derive(Debug)]
-struct Waiting {
+struct WaitingRequest {
     /// Number of the request.
     ticket: u32,
     /// Warnings of the text; empty if there are none.
@@ -125,7 +129,7 @@ impl PlansPart {
     /// Answers the request with this number, unless it was answered already.
     fn settle(&mut self, ticket: u32, result: Result<String, String>) {
         let Some(place) = self.waiting.iter().position(|waiting| waiting.ticket == ticket) else { return };
-        let Waiting { warnings, reply, .. } = self.waiting.remove(place);
+        let WaitingRequest { warnings, reply, .. } = self.waiting.remove(place);
         reply.answer(match result {
             Ok(sentence) => Answer::Done(warnings + &sentence),
             Err(sentence) => Answer::Refused(sentence),
@@ -138,10 +142,10 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
         let own = OWN.map(|(name, node)| (format!("/usr/mdle/{name}"), node));
         let stored = moment.pilot.plans().stored().flat_map(|plan| {
             let nodes = [
-                ("text", Node::reading(Kind::Text, "text of the plan's file")),
-                ("diagnostics", Node::reading(Kind::Text, "warnings about the plan's file")),
-                ("analysis", Node::reading(Kind::Text, "figures of the plan, as of `mdlec analyze`")),
-                ("reads", Node::reading(Kind::Text, "attributes of modules that the plan reads")),
+                ("text", Node::reading(ValueKind::Text, "text of the plan's file")),
+                ("diagnostics", Node::reading(ValueKind::Text, "warnings about the plan's file")),
+                ("analysis", Node::reading(ValueKind::Text, "figures of the plan, as of `mdlec analyze`")),
+                ("reads", Node::reading(ValueKind::Text, "attributes of modules that the plan reads")),
                 (
                     "run",
                     Node::method(
@@ -188,7 +192,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
             Change::Call(arguments) => call(path, arguments, moment.pilot),
         };
         match result {
-            Ok(Some(ticket)) => self.waiting.push(Waiting { ticket, warnings: String::new(), reply }),
+            Ok(Some(ticket)) => self.waiting.push(WaitingRequest { ticket, warnings: String::new(), reply }),
             // The name of the plan that continues is known only after the rollback.
             Ok(None) if path == "/usr/mdle/rollback" => {
                 reply.answer(Answer::Done(format!("{} goes on", moment.pilot.plans().name())));

@@ -17,11 +17,11 @@ use mdle_record::frames::Frames;
 use mdle_record::{Applied, Begin, TurnMade};
 use mdle_runtime::{Compass, Nanos, Sensed, Twist};
 
-use writer::{Order, Progress, write_all};
+use writer::{WriterOrder, WriterProgress, write_all};
 
 use crate::engine::Engine;
 use crate::plans::EngineAlphabet;
-use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value};
+use crate::tree::{Answer, Change, Node, Reply, Role, Served, Value, ValueKind};
 
 /// Maximum number of turns in the queue to the writing thread.
 const WAITING: usize = 256;
@@ -32,10 +32,10 @@ const AT_THE_END: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub(super) struct RecorderPart {
     /// Channel for orders; `None` if the system could not create the writing thread.
-    orders: Option<SyncSender<Order>>,
+    orders: Option<SyncSender<WriterOrder>>,
     thread: Option<JoinHandle<()>>,
     opened: Receiver<Result<(), String>>,
-    progress: Arc<Progress>,
+    progress: Arc<WriterProgress>,
     begin: Begin,
     /// `true` if the run waits when the queue is full.
     is_stepped: bool,
@@ -60,7 +60,7 @@ impl RecorderPart {
     /// real-time scheduling, because the recorder's thread would inherit it.
     pub(super) fn new(terms: &RunTerms, target: &str) -> Self {
         let ((orders, waiting), (sender, opened)) = (sync_channel(WAITING), channel());
-        let progress = Arc::<Progress>::default();
+        let progress = Arc::<WriterProgress>::default();
         let own = Arc::clone(&progress);
         let write = move || write_all(&waiting, &sender, &own);
         let thread = thread::Builder::new().name("mdle recorder".to_owned()).spawn(write).ok();
@@ -118,7 +118,7 @@ impl RecorderPart {
             frames.begin(&self.begin, y, &mut bytes);
         }
         frames.turn(made, y, std::iter::empty(), &mut bytes);
-        let order = Order::Write(bytes);
+        let order = WriterOrder::Write(bytes);
         let is_taken = if self.is_stepped { orders.send(order).is_ok() } else { orders.try_send(order).is_ok() };
         if is_taken {
             *tape = Tape { frames, has_begun: true };
@@ -156,7 +156,7 @@ impl RecorderPart {
                 format!("it records to {}: `call /recorder/stop` ends that", self.file)
             }
             ([file], Some(orders)) if file.ends_with(".mcap") => {
-                if orders.try_send(Order::Open(file.into())).is_ok() {
+                if orders.try_send(WriterOrder::Open(file.into())).is_ok() {
                     (self.file, self.turns, self.dropped) = (file.as_str().into(), 0, 0);
                     self.opening = Some(reply);
                     return;
@@ -178,7 +178,7 @@ impl RecorderPart {
         let mut end = Vec::new();
         tape.frames.end(&mut end);
         // If the queue is full, the file has no end mark, as after the process was killed.
-        let _ = orders.try_send(Order::Write(end)).and_then(|()| orders.try_send(Order::Close));
+        let _ = orders.try_send(WriterOrder::Write(end)).and_then(|()| orders.try_send(WriterOrder::Close));
         Answer::Done(format!("{} turns in {}", self.turns, self.file))
     }
 }
@@ -197,11 +197,11 @@ impl Drop for RecorderPart {
 impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for RecorderPart {
     fn nodes(&self, _: &Break<'_, Engine<A>>) -> Vec<(String, Node)> {
         let nodes = [
-            ("file", Node::reading(Kind::Text, "file that is written, or was written last")),
-            ("state", Node::reading(Kind::Text, "`records` or `stands`")),
-            ("turns", Node::reading(Kind::Integer, "number of turns that were recorded")),
-            ("bytes", Node::reading(Kind::Integer, "size of the file")),
-            ("dropped", Node::reading(Kind::Integer, "number of turns for which the file was too slow")),
+            ("file", Node::reading(ValueKind::Text, "file that is written, or was written last")),
+            ("state", Node::reading(ValueKind::Text, "`records` or `stands`")),
+            ("turns", Node::reading(ValueKind::Integer, "number of turns that were recorded")),
+            ("bytes", Node::reading(ValueKind::Integer, "size of the file")),
+            ("dropped", Node::reading(ValueKind::Integer, "number of turns for which the file was too slow")),
             ("start", Node::method(Role::Admin, "records what follows to a new file")),
             ("stop", Node::method(Role::Admin, "ends the record")),
         ];

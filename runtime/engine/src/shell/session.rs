@@ -25,7 +25,7 @@ const LOOK: Duration = Duration::from_millis(20);
 #[derive(Debug)]
 pub struct Session<A: Alphabet> {
     desk: Desk,
-    parts: Parts<A>,
+    parts: TreeParts<A>,
     request: StopRequest,
     /// Limits of the safety rules as last recorded; `None` if the run has no record or no rules.
     recorded: Option<Limits>,
@@ -33,7 +33,7 @@ pub struct Session<A: Alphabet> {
 
 /// All parts of the tree.
 #[derive(Debug)]
-struct Parts<A: Alphabet> {
+struct TreeParts<A: Alphabet> {
     robot: RobotPart,
     plans: PlansPart,
     modules: ModulesPart,
@@ -51,7 +51,7 @@ impl<A: Alphabet> Session<A> {
     /// this has no effect.
     #[must_use]
     pub fn new(desk: Desk, guardian: Option<Guardian<A>>, terms: &RunTerms, is_paused: bool) -> Self {
-        let parts = Parts {
+        let parts = TreeParts {
             robot: RobotPart,
             plans: PlansPart::default(),
             modules: ModulesPart::default(),
@@ -151,7 +151,7 @@ where
     }
 }
 
-impl<A> Parts<A>
+impl<A> TreeParts<A>
 where
     A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,

@@ -8,7 +8,7 @@ use std::time::Duration;
 use mdle_runtime::Nanos;
 
 use super::hub::{Hub, QUEUE};
-use super::shared::{NO_VALUE, Pending, Shared, Snapshot};
+use super::shared::{NO_VALUE, Pending, SharedTree, Snapshot};
 use super::watch::{REPORTS, Watches};
 use super::{Answer, Change, Node, Operation, Tree, Value};
 
@@ -46,7 +46,7 @@ pub trait Served<M: ?Sized> {
 /// The desk, which serves requests at turn breaks. Only [`Desk::wait`] waits.
 #[derive(Debug)]
 pub struct Desk {
-    shared: Arc<Shared>,
+    shared: Arc<SharedTree>,
     requests: Receiver<Pending>,
     tree: Arc<Tree>,
     /// Index of each node's value among the values of all parts, in the order of the tree.
@@ -64,7 +64,7 @@ impl Desk {
     #[must_use]
     pub fn with_hub() -> (Hub, Self) {
         let (queue, requests) = sync_channel(QUEUE);
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(SharedTree::default());
         let (reporter, reports) = sync_channel(REPORTS);
         let hub = Hub::new(Arc::clone(&shared), queue, reports);
         let desk = Self {

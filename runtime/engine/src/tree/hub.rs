@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::node::names;
 use super::proposal::proposal;
-use super::shared::{NO_VALUE, Pending, Shared, Snapshot};
+use super::shared::{NO_VALUE, Pending, SharedTree, Snapshot};
 use super::{Access, Answer, Change, Node, Operation, Request, Role, Tree};
 
 /// Maximum number of changes that wait for a turn break.
@@ -24,7 +24,7 @@ type LateAnswers = Vec<(String, Receiver<Answer>)>;
 /// The hub, which front ends use. Its methods may wait.
 #[derive(Debug, Clone)]
 pub struct Hub {
-    shared: Arc<Shared>,
+    shared: Arc<SharedTree>,
     queue: SyncSender<Pending>,
     reports: Arc<Mutex<Receiver<String>>>,
     /// Requests for which the front end no longer waits, as commands, with the channels for their answers.
@@ -33,7 +33,7 @@ pub struct Hub {
 
 impl Hub {
     /// Returns the hub that shares this data with a desk.
-    pub(super) fn new(shared: Arc<Shared>, queue: SyncSender<Pending>, reports: Receiver<String>) -> Self {
+    pub(super) fn new(shared: Arc<SharedTree>, queue: SyncSender<Pending>, reports: Receiver<String>) -> Self {
         Self { shared, queue, reports: Arc::new(Mutex::new(reports)), later: Arc::default() }
     }
 

@@ -21,7 +21,7 @@ pub struct Node {
     /// Operations that the node permits.
     pub access: Access,
     /// Kind of the node's value.
-    pub kind: Kind,
+    pub kind: ValueKind,
     /// Lowest role that may set or call the node.
     pub role: Role,
     /// Description of the node, as a noun phrase.
@@ -41,7 +41,7 @@ pub enum Access {
 
 /// Kind of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ValueKind {
     /// `true` or `false`.
     Flag,
     /// A whole number.
@@ -92,19 +92,19 @@ impl Role {
 impl Node {
     /// Returns an attribute that can only be read.
     #[must_use]
-    pub const fn reading(kind: Kind, doc: &'static str) -> Self {
+    pub const fn reading(kind: ValueKind, doc: &'static str) -> Self {
         Self { access: Access::Read, kind, role: Role::View, doc }
     }
 
     /// Returns an attribute that this role may set.
     #[must_use]
-    pub const fn setting(kind: Kind, role: Role, doc: &'static str) -> Self {
+    pub const fn setting(kind: ValueKind, role: Role, doc: &'static str) -> Self {
         Self { access: Access::Write, kind, role, doc }
     }
 
     /// Returns a method that this role may call.
     #[must_use]
     pub const fn method(role: Role, doc: &'static str) -> Self {
-        Self { access: Access::Call, kind: Kind::Text, role, doc }
+        Self { access: Access::Call, kind: ValueKind::Text, role, doc }
     }
 }

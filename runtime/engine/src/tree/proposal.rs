@@ -52,12 +52,12 @@ pub(crate) fn listed<S: AsRef<str>>(names: &[S]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tree::{Kind, Node};
+    use crate::tree::{Node, ValueKind};
 
     #[test]
     fn a_wrong_path_gets_a_proposal() {
         let paths = ["/clock/now", "/safety/limits/speed", "/usr/ears/bearing", "/usr/robot/v", "/usr/robot/x"];
-        let tree: Tree = paths.map(|path| (path.to_owned(), Node::reading(Kind::Number, "a number"))).into();
+        let tree: Tree = paths.map(|path| (path.to_owned(), Node::reading(ValueKind::Number, "a number"))).into();
         let wrong = [
             "/usr/robt",
             "/usr/robt/x",

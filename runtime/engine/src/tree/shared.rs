@@ -21,7 +21,7 @@ pub(super) struct Snapshot {
 
 /// Data that the hub and the desk share.
 #[derive(Debug, Default)]
-pub(super) struct Shared {
+pub(super) struct SharedTree {
     pub(super) snapshot: Mutex<Arc<Snapshot>>,
     pub(super) changed: Condvar,
     /// `true` from the end of a break whose state the snapshot shows until the next break begins.

@@ -6,14 +6,14 @@ use std::time::{Duration, Instant};
 
 use mdle_runtime::Nanos;
 
-use super::{Answer, Change, Desk, Kind, Node, Operation, Reply, Request, Role, Served, Value};
+use super::{Answer, Change, Desk, Node, Operation, Reply, Request, Role, Served, Value, ValueKind};
 
 /// A part with the number of the break.
 struct Number;
 
 impl Served<i64> for Number {
     fn nodes(&self, _: &i64) -> Vec<(String, Node)> {
-        vec![("/number".to_owned(), Node::reading(Kind::Integer, "number of the break"))]
+        vec![("/number".to_owned(), Node::reading(ValueKind::Integer, "number of the break"))]
     }
 
     fn values(&self, number: &i64, to: &mut Vec<Option<Value>>) {

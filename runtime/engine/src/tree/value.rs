@@ -6,26 +6,26 @@ use std::time::Duration;
 
 use mdle_quantity::Quantity;
 
-use super::Kind;
+use super::ValueKind;
 
 /// A value of an attribute.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
-    /// A value of [`Kind::Flag`].
+    /// A value of [`ValueKind::Flag`].
     Flag(bool),
-    /// A value of [`Kind::Integer`].
+    /// A value of [`ValueKind::Integer`].
     Integer(i64),
-    /// A value of [`Kind::Number`].
+    /// A value of [`ValueKind::Number`].
     Number(f64),
-    /// A value of [`Kind::Quantity`], in the unit of the kind.
+    /// A value of [`ValueKind::Quantity`], in the unit of the kind.
     Quantity(f64, &'static str),
-    /// A value of [`Kind::Text`].
+    /// A value of [`ValueKind::Text`].
     Text(Arc<str>),
-    /// A value of [`Kind::Pose`]: two lengths in metres and an angle in degrees.
+    /// A value of [`ValueKind::Pose`]: two lengths in metres and an angle in degrees.
     Pose([f64; 3]),
-    /// A value of [`Kind::Numbers`].
+    /// A value of [`ValueKind::Numbers`].
     Numbers(Arc<[f64]>),
-    /// A value of [`Kind::Bytes`].
+    /// A value of [`ValueKind::Bytes`].
     Bytes(Arc<[u8]>),
 }
 
@@ -96,34 +96,38 @@ fn separated<T: fmt::Display>(f: &mut fmt::Formatter<'_>, parts: impl Iterator<I
 ///
 /// # Errors
 /// Fails with a sentence that explains what to type instead.
-pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
+pub fn read(text: &str, kind: ValueKind) -> Result<Value, String> {
     match kind {
-        Kind::Flag => match text {
+        ValueKind::Flag => match text {
             "true" => Ok(Value::Flag(true)),
             "false" => Ok(Value::Flag(false)),
             _ => Err(format!("expected true or false, found `{text}`")),
         },
-        Kind::Integer => {
+        ValueKind::Integer => {
             let digits = text.strip_prefix('-').unwrap_or(text);
             let number = text.parse().ok().filter(|_| digits.bytes().all(|byte| byte.is_ascii_digit()));
             number.map(Value::Integer).ok_or_else(|| format!("expected a whole number, found `{text}`"))
         }
-        Kind::Number => number(text).map(Value::Number).ok_or_else(|| format!("expected a number, found `{text}`")),
-        Kind::Quantity(quantity, unit) => quantity_of(text, quantity, unit).map(|number| Value::Quantity(number, unit)),
-        Kind::Text => Ok(Value::text(text)),
-        Kind::Pose => {
+        ValueKind::Number => {
+            number(text).map(Value::Number).ok_or_else(|| format!("expected a number, found `{text}`"))
+        }
+        ValueKind::Quantity(quantity, unit) => {
+            quantity_of(text, quantity, unit).map(|number| Value::Quantity(number, unit))
+        }
+        ValueKind::Text => Ok(Value::text(text)),
+        ValueKind::Pose => {
             let [x, y, theta] = text.split_whitespace().collect::<Vec<_>>()[..] else {
                 return Err(format!("expected two lengths and an angle, such as `1m 0.5m 90deg`; found `{text}`"));
             };
             let length = |text| quantity_of(text, Quantity::Length, "m");
             Ok(Value::Pose([length(x)?, length(y)?, quantity_of(theta, Quantity::Angle, "deg")?]))
         }
-        Kind::Numbers => {
+        ValueKind::Numbers => {
             let numbers: Option<Vec<f64>> = text.split_whitespace().map(number).collect();
             let numbers = numbers.ok_or_else(|| format!("expected numbers between spaces, found `{text}`"))?;
             Ok(Value::Numbers(numbers.into()))
         }
-        Kind::Bytes => {
+        ValueKind::Bytes => {
             let pairs = text.as_bytes().chunks(2);
             let byte = |pair: &[u8]| match pair {
                 [first, second] if first.is_ascii_hexdigit() && second.is_ascii_hexdigit() => {
@@ -167,21 +171,21 @@ mod tests {
         assert_eq!(shown(-0.000_000_1, "m"), "0m");
         assert_eq!(shown(1e3 / 3.0, "deg"), "333.333333deg");
         assert_eq!(shown(100.0, "s"), "100s");
-        let speed = Kind::Quantity(Quantity::Speed, "m/s");
+        let speed = ValueKind::Quantity(Quantity::Speed, "m/s");
         assert_eq!(read("40cm/s", speed), Ok(Value::Quantity(0.4, "m/s")));
         assert_eq!(
-            (read("true", Kind::Flag), read("7", Kind::Integer)),
+            (read("true", ValueKind::Flag), read("7", ValueKind::Integer)),
             (Ok(Value::Flag(true)), Ok(Value::Integer(7)))
         );
-        let length = Kind::Quantity(Quantity::Length, "cm");
+        let length = ValueKind::Quantity(Quantity::Length, "cm");
         assert_eq!(read("1.5m", length), Ok(Value::Quantity(150.0, "cm")));
         let typed = [
-            ("-7", Kind::Integer),
-            ("0.1", Kind::Number),
-            ("1m -0.5m 90deg", Kind::Pose),
-            ("1 -2.5 1000", Kind::Numbers),
-            ("00ff7a", Kind::Bytes),
-            ("", Kind::Numbers),
+            ("-7", ValueKind::Integer),
+            ("0.1", ValueKind::Number),
+            ("1m -0.5m 90deg", ValueKind::Pose),
+            ("1 -2.5 1000", ValueKind::Numbers),
+            ("00ff7a", ValueKind::Bytes),
+            ("", ValueKind::Numbers),
         ];
         for (text, kind) in typed {
             assert_eq!(read(text, kind).map(|value| value.to_string()), Ok(text.to_owned()));
@@ -190,7 +194,7 @@ mod tests {
 
     #[test]
     fn a_wrong_value_is_refused_with_what_to_type() {
-        let speed = Kind::Quantity(Quantity::Speed, "m/s");
+        let speed = ValueKind::Quantity(Quantity::Speed, "m/s");
         let refused = [
             ("40", speed),
             ("1.2ft", speed),
@@ -198,16 +202,16 @@ mod tests {
             ("fast", speed),
             ("NaN", speed),
             ("", speed),
-            ("yes", Kind::Flag),
-            ("+1", Kind::Integer),
-            ("1.5", Kind::Integer),
-            ("99999999999999999999", Kind::Integer),
-            ("inf", Kind::Number),
-            ("1m 2m", Kind::Pose),
-            ("1m 2m 3", Kind::Pose),
-            ("1 x", Kind::Numbers),
-            ("0", Kind::Bytes),
-            ("+1é", Kind::Bytes),
+            ("yes", ValueKind::Flag),
+            ("+1", ValueKind::Integer),
+            ("1.5", ValueKind::Integer),
+            ("99999999999999999999", ValueKind::Integer),
+            ("inf", ValueKind::Number),
+            ("1m 2m", ValueKind::Pose),
+            ("1m 2m 3", ValueKind::Pose),
+            ("1 x", ValueKind::Numbers),
+            ("0", ValueKind::Bytes),
+            ("+1é", ValueKind::Bytes),
         ];
         insta::assert_snapshot!(refused.map(|(text, kind)| read(text, kind).unwrap_err()).join("\n"), @"
         `40` has no unit: write `40cm/s` or `40m/s`

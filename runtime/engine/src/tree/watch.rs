@@ -14,12 +14,12 @@ pub(super) const REPORTS: usize = 1024;
 /// The watched attributes.
 #[derive(Debug)]
 pub(super) struct Watches {
-    watched: Vec<Watched>,
+    watched: Vec<WatchedPath>,
     reports: SyncSender<String>,
 }
 
 #[derive(Debug)]
-struct Watched {
+struct WatchedPath {
     path: String,
     /// Last reported value; `None` before the first report.
     reported: Option<String>,
@@ -43,7 +43,7 @@ impl Watches {
         if self.watched.len() >= MOST {
             return Err(format!("{MOST} attributes are watched, which is the most: `unwatch` one"));
         }
-        self.watched.push(Watched { path: path.to_owned(), reported: None, next: Nanos::ZERO });
+        self.watched.push(WatchedPath { path: path.to_owned(), reported: None, next: Nanos::ZERO });
         Ok(())
     }
 
@@ -66,7 +66,7 @@ impl Watches {
     /// Reports the attributes that have changed; `value` returns the displayed value of a path.
     pub(super) fn report(&mut self, t: Nanos, value: impl Fn(&str) -> String) {
         let Self { watched, reports } = self;
-        for Watched { path, reported, next } in watched.iter_mut().filter(|watched| t >= watched.next) {
+        for WatchedPath { path, reported, next } in watched.iter_mut().filter(|watched| t >= watched.next) {
             let value = value(path);
             // A report that does not fit into the queue is tried again later.
             if reported.as_ref() != Some(&value)

@@ -19,17 +19,17 @@ fn state(from: &Endpoint, name: &str, number: u64) -> Vec<u8> {
 
 /// Returns the frame of a state that was measured and written `seconds` seconds after the start of its session.
 fn written_at(state: &State, seconds: u64) -> Vec<u8> {
-    let times = Times { begun: Nanos::ZERO, measured: Nanos(seconds * 1_000_000_000) };
-    let draft = state_frame::written(state, times, &Key::of("key"));
+    let times = StateTimes { begun: Nanos::ZERO, measured: Nanos(seconds * 1_000_000_000) };
+    let draft = state_frame::written(state, times, &SharedKey::of("key"));
     draft.frame_at(&Challenge::NONE, times.measured)[4..].to_vec()
 }
 
 #[test]
 fn a_letter_is_taken_once_on_any_medium() {
     let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
-    let from_ada = || Source::without_connection("ada");
+    let from_ada = || FrameSource::without_connection("ada");
     bob.take(&mut from_ada(), &state(&ada, "ada", 1)).unwrap();
-    ada.take(&mut Source::without_connection("bob"), &state(&bob, "bob", 1)).unwrap();
+    ada.take(&mut FrameSource::without_connection("bob"), &state(&bob, "bob", 1)).unwrap();
     let content = Content::Plan { when: When::Now, text: "{ Go (Atom (wait 1) stop) }".to_owned() };
     let plan = Letter { from: "ada".to_owned(), number: 1, content };
     let letter = ada.letter("bob", &plan).unwrap().draft.frame(&Challenge::NONE)[4..].to_vec();
@@ -42,9 +42,9 @@ fn a_letter_is_taken_once_on_any_medium() {
 #[test]
 fn the_newest_plan_of_a_robot_counts() {
     let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
-    let mut from_ada = Source::without_connection("ada");
+    let mut from_ada = FrameSource::without_connection("ada");
     bob.take(&mut from_ada, &state(&ada, "ada", 1)).unwrap();
-    ada.take(&mut Source::without_connection("bob"), &state(&bob, "bob", 1)).unwrap();
+    ada.take(&mut FrameSource::without_connection("bob"), &state(&bob, "bob", 1)).unwrap();
     let mut send = |number, content| {
         let letter = Letter { from: "ada".to_owned(), number, content };
         let frame = ada.letter("bob", &letter).unwrap().draft.frame(&Challenge::NONE);
@@ -67,7 +67,7 @@ fn the_newest_plan_of_a_robot_counts() {
 #[test]
 fn a_state_that_was_held_back_is_old() {
     let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
-    let mut from_ada = Source::without_connection("ada");
+    let mut from_ada = FrameSource::without_connection("ada");
     let mut send = |number, sent: u64| {
         let state = State { session: ada.session, ..State::of("ada", number) };
         bob.take(&mut from_ada, &written_at(&state, sent)).unwrap();
@@ -81,7 +81,7 @@ fn a_state_that_was_held_back_is_old() {
 #[test]
 fn a_plan_that_was_held_back_is_refused() {
     let (ada, bob) = (endpoint("ada", "bob"), endpoint("bob", "ada"));
-    let mut from_ada = Source::without_connection("ada");
+    let mut from_ada = FrameSource::without_connection("ada");
     bob.take(&mut from_ada, &written_at(&State { session: ada.session, ..State::of("ada", 1) }, 20)).unwrap();
     let mut send = |number, when, sent: u64, waits: u64| {
         let content = Content::Plan { when, text: "{ Go (Atom (wait 1) stop) }".to_owned() };

@@ -7,15 +7,15 @@ use mdle_runtime::Nanos;
 use super::letter_tests::{bob, bob_with_listener, envelope, first_letter, letters, plan};
 use super::tests::{frame, greeted, message, read_messages, received, state, wait};
 use super::*;
-use crate::link::frame::{Draft, Key, Times};
+use crate::link::frame::{FrameDraft, SharedKey, StateTimes};
 use crate::link::letter_frame::{self, Envelope};
 use crate::link::state_frame::written;
 use crate::plans::When;
 
 /// Returns the frame of a letter from `ada` to `bob`, posted `sent` seconds after the start of the session of `ada`.
-fn posted(meant_for: u64, sent: u64, letter: &Letter) -> Draft {
+fn posted(meant_for: u64, sent: u64, letter: &Letter) -> FrameDraft {
     let envelope = Envelope { sent: Nanos(sent * 1_000_000_000), ..envelope(meant_for) };
-    letter_frame::written(&envelope, letter, &Key::of_letters("pair"))
+    letter_frame::written(&envelope, letter, &SharedKey::of_letters("pair"))
 }
 
 #[test]
@@ -35,8 +35,8 @@ fn a_plan_that_is_refused_on_arrival_is_answered() {
         posted(session, 19, &plan(6, When::Now)),
     ];
     let (mut stream, challenge) = greeted(place);
-    let times = Times { begun: Nanos::ZERO, measured: Nanos(20_000_000_000) };
-    let begin = written(&state("ada", 1), times, &Key::of("key")).frame_at(&challenge, times.measured);
+    let times = StateTimes { begun: Nanos::ZERO, measured: Nanos(20_000_000_000) };
+    let begin = written(&state("ada", 1), times, &SharedKey::of("key")).frame_at(&challenge, times.measured);
     stream.write_all(&begin).unwrap();
     // Each plan is sent on a second connection as well, and answered once.
     for frame in drafts.iter().chain(&drafts).map(|draft| draft.frame(&challenge)) {

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use crate::link::endpoint::Endpoint;
 use crate::link::letter_frame::{LONGEST_LETTER, is_letter};
-use crate::link::source::Source;
+use crate::link::source::FrameSource;
 use crate::link::state_frame::LONGEST;
 
 /// Maximum wait for bytes before the thread checks whether the run has ended.
@@ -19,7 +19,7 @@ const SILENT: Duration = Duration::from_secs(2);
 /// A connection from a peer.
 pub(super) struct Connection {
     pub(super) stream: TcpStream,
-    pub(super) source: Source,
+    pub(super) source: FrameSource,
     /// `true` once the peer has opened another connection.
     pub(super) is_replaced: Arc<AtomicBool>,
     pub(super) endpoint: Arc<Endpoint>,

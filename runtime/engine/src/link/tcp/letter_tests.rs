@@ -9,7 +9,7 @@ use super::tests::{
     SOON, address, assert_goes_on, bound, frame, greeted, message, read_messages, received, settings, state, wait,
 };
 use super::*;
-use crate::link::frame::{Challenge, Draft, Key};
+use crate::link::frame::{Challenge, FrameDraft, SharedKey};
 use crate::link::letter_frame::{self, Envelope, is_letter};
 use crate::link::{Content, LONGEST_TEXT};
 use crate::plans::When;
@@ -89,7 +89,7 @@ fn what_is_no_letter_of_a_peer_is_refused() {
     let (mut bob, place) = bob();
     let own = envelope(bob.session());
     let letter = |envelope: &Envelope, key| {
-        let draft = letter_frame::written(envelope, &plan(&envelope.from, 1), &Key::of_letters(key));
+        let draft = letter_frame::written(envelope, &plan(&envelope.from, 1), &SharedKey::of_letters(key));
         move |challenge: &Challenge| draft.frame(challenge)
     };
     let good = letter(&own, "pair");
@@ -149,7 +149,9 @@ fn what_is_no_letter_of_a_peer_is_refused() {
 fn a_flood_of_letters_is_refused() {
     let (mut bob, place) = bob();
     let envelope = envelope(bob.session());
-    let draft = |number| -> Draft { letter_frame::written(&envelope, &plan("ada", number), &Key::of_letters("pair")) };
+    let draft = |number| -> FrameDraft {
+        letter_frame::written(&envelope, &plan("ada", number), &SharedKey::of_letters("pair"))
+    };
     let (mut stream, challenge) = greeted(place);
     stream.write_all(&frame(&state("ada", 2), "key", &challenge)).unwrap();
     let mut number = 100;
@@ -181,7 +183,7 @@ pub(super) fn first_letter(listener: &TcpListener) -> Letter {
     loop {
         let frame = frame();
         if is_letter(&frame) {
-            return letter_frame::read(&frame, &Key::of_letters("pair"), &Challenge::NONE).unwrap().1;
+            return letter_frame::read(&frame, &SharedKey::of_letters("pair"), &Challenge::NONE).unwrap().1;
         }
         assert!(begun.elapsed() < SOON, "no letter arrives");
     }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use rustix::net::sockopt::{set_socket_send_buffer_size, set_tcp_user_timeout};
 
 use crate::link::endpoint::Endpoint;
-use crate::link::frame::{Challenge, Draft, GREETING_LENGTH, Refused, VERSION};
+use crate::link::frame::{Challenge, FrameDraft, GREETING_LENGTH, RefusedFrame, VERSION};
 use crate::link::outbox::Outbox;
 
 /// Maximum duration of an attempt to connect.
@@ -87,8 +87,12 @@ fn connect(address: SocketAddr) -> Result<(TcpStream, Challenge), String> {
     read.map_err(|_| "it sends no greeting, as no version of the link before 4 does".to_owned())?;
     match Challenge::of_greeting(&greeting) {
         Ok(challenge) => Ok((stream, challenge)),
-        Err(Refused::Version(other)) => Err(format!("its version of the link is {other}, and this one has {VERSION}")),
-        Err(Refused::Garbage | Refused::Key | Refused::Impossible) => Err("its greeting is none of a robot".to_owned()),
+        Err(RefusedFrame::Version(other)) => {
+            Err(format!("its version of the link is {other}, and this one has {VERSION}"))
+        }
+        Err(RefusedFrame::Garbage | RefusedFrame::Key | RefusedFrame::Impossible) => {
+            Err("its greeting is none of a robot".to_owned())
+        }
     }
 }
 
@@ -100,7 +104,7 @@ struct Sender<'l> {
     endpoint: &'l Endpoint,
     /// The last state that was taken; `None` before the first. Every connection begins with it, because a letter is
     /// accepted only from a robot whose state has arrived.
-    last: Option<Draft>,
+    last: Option<FrameDraft>,
     /// `true` once it has been reported that the peer cannot be reached.
     is_known_as_down: bool,
 }

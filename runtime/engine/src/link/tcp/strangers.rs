@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::link::endpoint::Endpoint;
 use crate::link::frame::Challenge;
-use crate::link::source::Source;
+use crate::link::source::FrameSource;
 use crate::link::state_frame::LONGEST;
 
 /// Maximum number of connections without a proved name.
@@ -27,7 +27,7 @@ struct Stranger {
     stream: TcpStream,
     from: IpAddr,
     since: Instant,
-    source: Source,
+    source: FrameSource,
     /// Bytes that have arrived: the length of a frame, followed by the frame.
     bytes: Vec<u8>,
 }
@@ -35,13 +35,13 @@ struct Stranger {
 /// A connection on which the first state has arrived.
 pub(super) struct Proved {
     pub(super) stream: TcpStream,
-    pub(super) source: Source,
+    pub(super) source: FrameSource,
     /// Name of the robot.
     pub(super) robot: String,
 }
 
 /// Progress of a stranger towards a proved name.
-enum Progress {
+enum HandshakeProgress {
     Waits,
     /// The connection has ended.
     Gone,
@@ -84,10 +84,10 @@ impl Strangers {
         let mut proved = Vec::new();
         for mut stranger in std::mem::take(&mut self.strangers) {
             match stranger.look(endpoint) {
-                Progress::Waits => self.strangers.push(stranger),
-                Progress::Gone => {}
-                Progress::Refused(reason) => endpoint.refuse(&stranger.from.to_string(), &reason),
-                Progress::Proved => {
+                HandshakeProgress::Waits => self.strangers.push(stranger),
+                HandshakeProgress::Gone => {}
+                HandshakeProgress::Refused(reason) => endpoint.refuse(&stranger.from.to_string(), &reason),
+                HandshakeProgress::Proved => {
                     let Stranger { stream, source, .. } = stranger;
                     let robot = source.robot().unwrap_or_default().to_owned();
                     proved.push(Proved { stream, source, robot });
@@ -116,41 +116,41 @@ impl Stranger {
         let challenge = Challenge::random()?;
         // The send buffer of a new connection is empty, so this does not block.
         stream.write_all(&challenge.greeting())?;
-        let source = Source::of_connection(challenge);
+        let source = FrameSource::of_connection(challenge);
         Ok(Self { stream, from, since: Instant::now(), source, bytes: Vec::new() })
     }
 
     /// Reads the available bytes of the first frame, and checks the frame once it is complete.
-    fn look(&mut self, endpoint: &Endpoint) -> Progress {
+    fn look(&mut self, endpoint: &Endpoint) -> HandshakeProgress {
         loop {
             let missing = match self.bytes.split_first_chunk() {
                 None => 4 - self.bytes.len(),
                 Some((length, frame)) => {
                     let length = u32::from_le_bytes(*length) as usize;
                     if length > LONGEST {
-                        return Progress::Refused("it sends no states".to_owned());
+                        return HandshakeProgress::Refused("it sends no states".to_owned());
                     }
                     if frame.len() >= length {
                         return match endpoint.take(&mut self.source, frame) {
-                            Ok(()) => Progress::Proved,
-                            Err(reason) => Progress::Refused(reason),
+                            Ok(()) => HandshakeProgress::Proved,
+                            Err(reason) => HandshakeProgress::Refused(reason),
                         };
                     }
                     length - frame.len()
                 }
             };
             let mut buffer = [0; 1024];
-            let Some(place) = buffer.get_mut(..missing.min(1024)) else { return Progress::Gone };
+            let Some(place) = buffer.get_mut(..missing.min(1024)) else { return HandshakeProgress::Gone };
             match self.stream.read(place) {
-                Ok(0) if self.bytes.is_empty() => return Progress::Gone,
-                Ok(0) => return Progress::Refused("it ended within a frame".to_owned()),
+                Ok(0) if self.bytes.is_empty() => return HandshakeProgress::Gone,
+                Ok(0) => return HandshakeProgress::Refused("it ended within a frame".to_owned()),
                 Ok(count) => self.bytes.extend(place.get(..count).unwrap_or_default()),
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {
                     let is_late = self.since.elapsed() >= PROVES;
                     let reason = || format!("it has not sent a state within {} s", PROVES.as_secs());
-                    return if is_late { Progress::Refused(reason()) } else { Progress::Waits };
+                    return if is_late { HandshakeProgress::Refused(reason()) } else { HandshakeProgress::Waits };
                 }
-                Err(_) => return Progress::Gone,
+                Err(_) => return HandshakeProgress::Gone,
             }
         }
     }

@@ -11,7 +11,7 @@ use mdle_runtime::{Meters, Nanos, Pose};
 use super::sender::WRITES;
 use super::*;
 use crate::attribute::{AttributeName, Value};
-use crate::link::frame::{Challenge, GREETING_LENGTH, Key, Times};
+use crate::link::frame::{Challenge, GREETING_LENGTH, SharedKey, StateTimes};
 use crate::link::state_frame::written;
 use crate::link::{SharedValue, clock};
 
@@ -59,7 +59,7 @@ pub(super) fn greeted(place: SocketAddr) -> (TcpStream, Challenge) {
 /// Returns the frame of a state for this challenge, written at the start of the session.
 pub(super) fn frame(state: &State, key: &str, challenge: &Challenge) -> Vec<u8> {
     let now = clock::now();
-    written(state, Times { begun: now, measured: now }, &Key::of(key)).frame_at(challenge, now)
+    written(state, StateTimes { begun: now, measured: now }, &SharedKey::of(key)).frame_at(challenge, now)
 }
 
 /// Returns the link of `bob`, whose only peer is `ada`, and its address. No robot listens at the address of `ada`.

@@ -11,7 +11,7 @@ use mdle_record::{RecordFile, Records};
 
 /// Progress of the thread that writes a record.
 #[derive(Debug, Default)]
-pub(super) struct Progress {
+pub(super) struct WriterProgress {
     pub(super) bytes: AtomicU64,
     /// Reason why writing has failed, and the number of turns in the file; `None` if writing has not failed.
     pub(super) fault: Mutex<Option<(String, u64)>>,
@@ -19,18 +19,22 @@ pub(super) struct Progress {
 
 /// An order for the thread that writes records.
 #[derive(Debug)]
-pub(super) enum Order {
+pub(super) enum WriterOrder {
     Open(PathBuf),
     Write(Vec<u8>),
     Close,
 }
 
 /// Carries out orders until the channel is closed.
-pub(super) fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), String>>, progress: &Arc<Progress>) {
+pub(super) fn write_all(
+    orders: &Receiver<WriterOrder>,
+    opened: &Sender<Result<(), String>>,
+    progress: &Arc<WriterProgress>,
+) {
     let (mut record, mut name): (Option<RecordFile<CountingFile>>, _) = (None, PathBuf::new());
     for order in orders {
         let written = match order {
-            Order::Open(path) => {
+            WriterOrder::Open(path) => {
                 progress.bytes.store(0, Ordering::Relaxed);
                 let file = created(&path);
                 name = path;
@@ -38,8 +42,8 @@ pub(super) fn write_all(orders: &Receiver<Order>, opened: &Sender<Result<(), Str
                 record = file.ok().map(|file| RecordFile::new(CountingFile { file, progress: Arc::clone(progress) }));
                 Ok(())
             }
-            Order::Write(bytes) => record.as_mut().map_or(Ok(()), |record| record.write_all(&bytes)),
-            Order::Close => {
+            WriterOrder::Write(bytes) => record.as_mut().map_or(Ok(()), |record| record.write_all(&bytes)),
+            WriterOrder::Close => {
                 record = None;
                 Ok(())
             }
@@ -72,7 +76,7 @@ fn created(path: &Path) -> Result<File, String> {
 /// A file that counts the bytes written to it.
 struct CountingFile {
     file: File,
-    progress: Arc<Progress>,
+    progress: Arc<WriterProgress>,
 }
 
 impl Write for CountingFile {
