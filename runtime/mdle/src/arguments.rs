@@ -40,7 +40,7 @@ pub(crate) use why::{Question, Why};
 
 /// The parsed command line: a command with its arguments.
 #[derive(Debug, PartialEq)]
-pub(crate) enum Asked {
+pub(crate) enum ParsedCommand {
     /// `mdle run` or `mdle shell`.
     Run(Box<RunArguments>),
     /// `mdle navigate`.
@@ -146,7 +146,7 @@ const FLAGS: [&str; 4] = ["--deny-warnings", "-e", "-x", "--paused"];
 ///
 /// # Errors
 /// Fails if the arguments are invalid, or ask for help.
-pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
+pub(crate) fn parse(arguments: Vec<OsString>) -> Result<ParsedCommand, Failure> {
     let words = match arguments.get(1).and_then(|command| command.to_str()) {
         Some("run" | "shell") => 1,
         Some("navigate") => 3,
@@ -157,20 +157,20 @@ pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Asked, Failure> {
     match matches.subcommand() {
         Some(("run", run)) => Ok(of(run, own, options, None)),
         Some(("shell", shell)) => Ok(of(shell, own, options, Some(session(shell)))),
-        Some(("navigate", matches)) => Ok(Asked::Navigate(Navigate::of(matches, own, options))),
+        Some(("navigate", matches)) => Ok(ParsedCommand::Navigate(Navigate::of(matches, own, options))),
         Some(("new-module", new)) => {
             let name = new.get_one("name").cloned().unwrap_or_default();
-            Ok(Asked::NewModule(NewModule { name, checkout: new.get_one("checkout").cloned() }))
+            Ok(ParsedCommand::NewModule(NewModule { name, checkout: new.get_one("checkout").cloned() }))
         }
-        Some(("replay", matches)) => Ok(Asked::Replay(Replay::of(matches))),
-        Some(("why", matches)) => Ok(Asked::Why(Why::of(matches))),
-        Some(("log", matches)) => Ok(Asked::Log(Log::of(matches))),
-        Some(("locate", matches)) => Ok(Asked::Locate(Locate::of(matches))),
-        Some(("map", matches)) => Ok(Asked::Map(MakeMap::of(matches))),
-        Some(("plot", matches)) => Ok(Asked::Plot(Plot::of(matches))),
-        Some(("test", matches)) => Ok(Asked::Test(test::read(matches))),
-        Some(("completions", matches)) => Ok(Asked::Completions(manual::shell(matches))),
-        Some(("man", matches)) => Ok(Asked::Man(manual::words(matches))),
+        Some(("replay", matches)) => Ok(ParsedCommand::Replay(Replay::of(matches))),
+        Some(("why", matches)) => Ok(ParsedCommand::Why(Why::of(matches))),
+        Some(("log", matches)) => Ok(ParsedCommand::Log(Log::of(matches))),
+        Some(("locate", matches)) => Ok(ParsedCommand::Locate(Locate::of(matches))),
+        Some(("map", matches)) => Ok(ParsedCommand::Map(MakeMap::of(matches))),
+        Some(("plot", matches)) => Ok(ParsedCommand::Plot(Plot::of(matches))),
+        Some(("test", matches)) => Ok(ParsedCommand::Test(test::read(matches))),
+        Some(("completions", matches)) => Ok(ParsedCommand::Completions(manual::shell(matches))),
+        Some(("man", matches)) => Ok(ParsedCommand::Man(manual::words(matches))),
         Some(_) | None => Err(Failure::Usage("no command was given\nhelp: `mdle run PLAN` runs a plan".to_owned())),
     }
 }
@@ -186,9 +186,14 @@ fn session(shell: &ArgMatches) -> SessionOptions {
     }
 }
 
-fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: Option<SessionOptions>) -> Asked {
+fn of(
+    run: &ArgMatches,
+    words: Vec<OsString>,
+    options: Vec<OsString>,
+    session: Option<SessionOptions>,
+) -> ParsedCommand {
     let (ears, head) = ears::ears(run);
-    Asked::Run(Box::new(RunArguments {
+    ParsedCommand::Run(Box::new(RunArguments {
         file: run.get_one("file").cloned().unwrap_or_default(),
         target: run.get_one("target").cloned(),
         plan: run.get_one("plan").cloned(),
@@ -338,18 +343,18 @@ mod tests {
 
     fn parsed(line: &str) -> RunArguments {
         match parse(line.split(' ').map(OsString::from).collect()).unwrap() {
-            Asked::Run(run) => *run,
-            Asked::Navigate(navigate) => panic!("{navigate:?}"),
-            Asked::NewModule(new) => panic!("{new:?}"),
-            Asked::Replay(replay) => panic!("{replay:?}"),
-            Asked::Why(why) => panic!("{why:?}"),
-            Asked::Log(log) => panic!("{log:?}"),
-            Asked::Locate(locate) => panic!("{locate:?}"),
-            Asked::Map(map) => panic!("{map:?}"),
-            Asked::Plot(plot) => panic!("{plot:?}"),
-            Asked::Test(test) => panic!("{test:?}"),
-            Asked::Completions(shell) => panic!("{shell:?}"),
-            Asked::Man(words) => panic!("{words:?}"),
+            ParsedCommand::Run(run) => *run,
+            ParsedCommand::Navigate(navigate) => panic!("{navigate:?}"),
+            ParsedCommand::NewModule(new) => panic!("{new:?}"),
+            ParsedCommand::Replay(replay) => panic!("{replay:?}"),
+            ParsedCommand::Why(why) => panic!("{why:?}"),
+            ParsedCommand::Log(log) => panic!("{log:?}"),
+            ParsedCommand::Locate(locate) => panic!("{locate:?}"),
+            ParsedCommand::Map(map) => panic!("{map:?}"),
+            ParsedCommand::Plot(plot) => panic!("{plot:?}"),
+            ParsedCommand::Test(test) => panic!("{test:?}"),
+            ParsedCommand::Completions(shell) => panic!("{shell:?}"),
+            ParsedCommand::Man(words) => panic!("{words:?}"),
         }
     }
 

@@ -71,7 +71,7 @@ pub(crate) struct ExaminedTurn {
 
 /// Reason why the replay of a record cannot continue.
 #[derive(Debug)]
-pub(crate) enum Stop {
+pub(crate) enum ExaminedStop {
     /// The record cannot be read.
     Unread(ReadError),
     /// A plan that replaced another plan during the run cannot be compiled.
@@ -99,11 +99,11 @@ impl ExaminedRun {
     }
 
     /// Replays the next turn; returns `None` at the end of the record.
-    pub(crate) fn turn(&mut self) -> Option<Result<ExaminedTurn, Stop>> {
+    pub(crate) fn turn(&mut self) -> Option<Result<ExaminedTurn, ExaminedStop>> {
         let turn = match self.run.turn()? {
             Ok(turn) => turn,
-            Err(replayer::Stop::Unread(error)) => return Some(Err(Stop::Unread(error))),
-            Err(replayer::Stop::Failed(failure)) => return Some(Err(Stop::Failed(failure))),
+            Err(replayer::ReplayStop::Unread(error)) => return Some(Err(ExaminedStop::Unread(error))),
+            Err(replayer::ReplayStop::Failed(failure)) => return Some(Err(ExaminedStop::Failed(failure))),
         };
         if let Some(safety) = event(&turn.messages, "safety") {
             self.safety = self.with_condition(safety);
@@ -118,7 +118,7 @@ impl ExaminedRun {
             self.plans.insert(self.number, Rc::new(plan));
         }
         if let Some(difference) = self.difference(&turn) {
-            return Some(Err(Stop::Differs(turn.recorded.number, difference)));
+            return Some(Err(ExaminedStop::Differs(turn.recorded.number, difference)));
         }
         let moments = looked_at.map_or(&[][..], |(_, moments)| moments).to_vec();
         let (safety, next) = (self.safety.clone(), self.run.next_time());
@@ -203,7 +203,7 @@ fn other_text(plan: &dyn Texts, turn: &ReplayedTurn) -> Option<String> {
     None
 }
 
-impl Stop {
+impl ExaminedStop {
     /// Returns the reason as a sentence, for a message.
     pub(crate) fn sentence(&self) -> String {
         match self {

@@ -44,7 +44,7 @@ mod why;
 
 use std::process::ExitCode;
 
-use arguments::Asked;
+use arguments::ParsedCommand;
 use failure::Failure;
 pub use link::{OpenRouter, RouterSettings};
 pub use mdle_engine as engine;
@@ -80,18 +80,18 @@ fn main_as(add: impl FnOnce(&mut Library<Sensed>), open_router: Option<OpenRoute
     add(&mut library);
     let arguments = std::env::args_os().collect();
     let run = |asked| match asked {
-        Asked::Run(arguments) => run::run(*arguments, &mut library, open_router),
-        Asked::Navigate(arguments) => navigate::navigate(arguments, &mut library),
-        Asked::NewModule(arguments) => new_module::new_module(&arguments),
-        Asked::Replay(arguments) => replay::replay(&arguments),
-        Asked::Why(arguments) => why::why(&arguments),
-        Asked::Log(arguments) => log::log(&arguments),
-        Asked::Locate(arguments) => map::locate(&arguments),
-        Asked::Map(arguments) => map::map(&arguments),
-        Asked::Plot(arguments) => plot::plot(&arguments),
-        Asked::Test(arguments) => test::test(&arguments, &library),
-        Asked::Completions(shell) => manual::completions(shell),
-        Asked::Man(words) => manual::man(&words),
+        ParsedCommand::Run(arguments) => run::run(*arguments, &mut library, open_router),
+        ParsedCommand::Navigate(arguments) => navigate::navigate(arguments, &mut library),
+        ParsedCommand::NewModule(arguments) => new_module::new_module(&arguments),
+        ParsedCommand::Replay(arguments) => replay::replay(&arguments),
+        ParsedCommand::Why(arguments) => why::why(&arguments),
+        ParsedCommand::Log(arguments) => log::log(&arguments),
+        ParsedCommand::Locate(arguments) => map::locate(&arguments),
+        ParsedCommand::Map(arguments) => map::map(&arguments),
+        ParsedCommand::Plot(arguments) => plot::plot(&arguments),
+        ParsedCommand::Test(arguments) => test::test(&arguments, &library),
+        ParsedCommand::Completions(shell) => manual::completions(shell),
+        ParsedCommand::Man(words) => manual::man(&words),
     };
     arguments::parse(arguments).and_then(run).unwrap_or_else(Failure::tell)
 }

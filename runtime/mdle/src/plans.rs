@@ -38,7 +38,7 @@ pub(crate) fn begin<A: EngineAlphabet>(
     target: &Arc<Target>,
     robots: Vec<String>,
 ) -> Result<(), Refusal> {
-    let (target, known) = (Arc::clone(target), Known::of(plans, robots));
+    let (target, known) = (Arc::clone(target), PermittedNames::of(plans, robots));
     let started = plans.compile_with(Box::new(move |source| compiled(source, &target, &known)));
     started.map_err(|error| Refusal::Fault(format!("the system gives no thread for the compiler: {error}")))?;
     plans.store(first).map_err(Refusal::Fault)
@@ -47,7 +47,7 @@ pub(crate) fn begin<A: EngineAlphabet>(
 /// Permits other robots to send plans for `target` that name only the robots `robots`. For simulated time: turns wait
 /// until a sent plan is compiled.
 pub(crate) fn begin_at_once<A: EngineAlphabet>(plans: &mut Plans<A>, target: &Arc<Target>, robots: Vec<String>) {
-    let (target, known) = (Arc::clone(target), Known::of(plans, robots));
+    let (target, known) = (Arc::clone(target), PermittedNames::of(plans, robots));
     plans.compile_at_once_with(Box::new(move |source| compiled(source, &target, &known)));
 }
 
@@ -59,7 +59,7 @@ pub(crate) fn begin_at_once<A: EngineAlphabet>(plans: &mut Plans<A>, target: &Ar
 fn compiled<A: EngineAlphabet>(
     source: &PlanSource,
     target: &Target,
-    known: &Known,
+    known: &PermittedNames,
 ) -> Result<CompiledPlans<A>, String> {
     let sender = if let PlanSource::Peer { robot, .. } = source { Some(robot.as_str()) } else { None };
     let is_sent = sender.is_some();
@@ -111,7 +111,7 @@ pub(crate) fn facts(machine: &Machine, warnings: &str) -> PlanFacts {
 }
 
 /// The names that plans from other robots may use.
-struct Known {
+struct PermittedNames {
     robots: Vec<String>,
     /// Names of the paths of the run's first plan.
     paths: Vec<&'static str>,
@@ -119,7 +119,7 @@ struct Known {
     budgets: RefCell<BTreeMap<String, NameBudget>>,
 }
 
-impl Known {
+impl PermittedNames {
     /// Returns the names that plans from other robots may use: `robots`, and the paths that the first plan replays.
     fn of<A: EngineAlphabet>(plans: &Plans<A>, robots: Vec<String>) -> Self {
         Self { robots, paths: plans.paths().to_vec(), budgets: RefCell::default() }

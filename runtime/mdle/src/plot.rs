@@ -80,7 +80,13 @@ struct Pictured {
 
 impl Pictured {
     /// Draws a turn; `plan` is `None` before the first plan begins.
-    fn turn(&mut self, turn: &ExaminedTurn, plan: Option<&ExaminedPlan>, picture: &mut Picture, signals: &[Signal]) {
+    fn turn(
+        &mut self,
+        turn: &ExaminedTurn,
+        plan: Option<&ExaminedPlan>,
+        picture: &mut Picture,
+        signals: &[CommonSignal],
+    ) {
         let (t, y) = (turn.recorded.t, &turn.recorded.y);
         self.output(y, t, picture);
         if let Some(plan) = plan {
@@ -167,7 +173,7 @@ impl Pictured {
 
 /// A signal that the records of all robots contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Signal {
+enum CommonSignal {
     Speed,
     TurnRate,
     X,
@@ -177,31 +183,31 @@ enum Signal {
     Range(usize),
 }
 
-const SIGNALS: [(&str, &str, Signal); 6] = [
-    ("v", "cm/s", Signal::Speed),
-    ("omega", "rad/s", Signal::TurnRate),
-    ("x", "m", Signal::X),
-    ("y", "m", Signal::Y),
-    ("theta", "deg", Signal::Heading),
-    ("battery", "V", Signal::Battery),
+const SIGNALS: [(&str, &str, CommonSignal); 6] = [
+    ("v", "cm/s", CommonSignal::Speed),
+    ("omega", "rad/s", CommonSignal::TurnRate),
+    ("x", "m", CommonSignal::X),
+    ("y", "m", CommonSignal::Y),
+    ("theta", "deg", CommonSignal::Heading),
+    ("battery", "V", CommonSignal::Battery),
 ];
 
 /// Returns the signal called `name`.
 ///
 /// # Errors
 /// Fails if there is no such signal.
-fn signal(name: &str) -> Result<Signal, Failure> {
+fn signal(name: &str) -> Result<CommonSignal, Failure> {
     let range = name.strip_prefix('r').and_then(|number| number.parse().ok()).filter(|number| *number < SONARS);
     let named = || SIGNALS.iter().find(|known| known.0 == name).map(|known| known.2);
     let names: Vec<&str> = SIGNALS.iter().map(|known| known.0).collect();
-    range.map(Signal::Range).or_else(named).ok_or_else(|| {
+    range.map(CommonSignal::Range).or_else(named).ok_or_else(|| {
         let help = names.join(", ");
         let meant = did_you_mean(name, &names);
         Failure::Usage(format!("a record has no signal `{name}`{meant}\nhelp: its signals are {help}, and r0 to r15"))
     })
 }
 
-impl Signal {
+impl CommonSignal {
     /// Returns the name of the signal with its unit.
     fn title(self) -> String {
         match self {

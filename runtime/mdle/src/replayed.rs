@@ -5,7 +5,7 @@ use mdle_runtime::Nanos;
 
 use crate::failure::Failure;
 use crate::record::{DifferingPart, OVER};
-use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
+use crate::replayer::{RecordedRun, ReplayStop, ReplayedTurn};
 
 /// Outcome of a replay.
 #[derive(Debug)]
@@ -65,9 +65,9 @@ pub(crate) fn replayed(replay: &mut dyn RecordedRun, terms: ReplayTerms) -> Resu
     while let Some(turn) = replay.turn() {
         let turn = match turn {
             Ok(turn) => turn,
-            Err(Stop::Failed(failure)) => return Err(failure),
-            Err(Stop::Unread(error)) if difference.is_none() => return Ok(ReplayOutcome::Unread(turns, error)),
-            Err(Stop::Unread(_)) => break,
+            Err(ReplayStop::Failed(failure)) => return Err(failure),
+            Err(ReplayStop::Unread(error)) if difference.is_none() => return Ok(ReplayOutcome::Unread(turns, error)),
+            Err(ReplayStop::Unread(_)) => break,
         };
         let ReplayedTurn { recorded, messages, parts, laws, .. } = turn;
         let (number, t) = (recorded.number, recorded.t);

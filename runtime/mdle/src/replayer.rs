@@ -27,7 +27,7 @@ use crate::safety::{Guarded, SafetyFile};
 /// A replay of a recorded run, for any robot.
 pub(crate) trait RecordedRun {
     /// Replays the next turn; returns `None` at the end of the record.
-    fn turn(&mut self) -> Option<Result<ReplayedTurn, Stop>>;
+    fn turn(&mut self) -> Option<Result<ReplayedTurn, ReplayStop>>;
 
     /// Returns the machine of the plan that was active in the last turn, and the moments of that turn; `None`
     /// if the plan has not begun, or is not observed.
@@ -68,7 +68,7 @@ pub(crate) struct ReplayedTurn {
 
 /// Reason why the replay ends before the end of the record.
 #[derive(Debug)]
-pub(crate) enum Stop {
+pub(crate) enum ReplayStop {
     /// The record cannot be read.
     Unread(ReadError),
     /// A plan that replaced another plan during the run cannot be compiled.
@@ -144,14 +144,14 @@ struct ReplayOf<A: EngineAlphabet<Output = Sensed, Input = Twist>> {
 }
 
 impl<A: EngineAlphabet<Output = Sensed, Input = Twist>> RecordedRun for ReplayOf<A> {
-    fn turn(&mut self) -> Option<Result<ReplayedTurn, Stop>> {
+    fn turn(&mut self) -> Option<Result<ReplayedTurn, ReplayStop>> {
         let (mut recorded, messages) = match self.record.next()? {
             Ok(turn) => turn,
-            Err(error) => return Some(Err(Stop::Unread(error))),
+            Err(error) => return Some(Err(ReplayStop::Unread(error))),
         };
         for change in std::mem::take(&mut recorded.changes) {
             if let Err(failure) = self.repeat(change) {
-                return Some(Err(Stop::Failed(failure)));
+                return Some(Err(ReplayStop::Failed(failure)));
             }
         }
         Some(Ok(self.made(recorded, messages)))

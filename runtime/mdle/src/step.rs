@@ -10,7 +10,7 @@ use mdle_runtime::{Nanos, Printable};
 
 use crate::failure::{self, Failure};
 use crate::record::OVER;
-use crate::replayer::{RecordedRun, ReplayedTurn, Stop};
+use crate::replayer::{RecordedRun, ReplayStop, ReplayedTurn};
 use crate::run_time::run_time;
 
 /// The commands, with their descriptions.
@@ -34,17 +34,17 @@ pub(crate) struct Steps {
 
 /// A turn that has been replayed.
 #[derive(Debug)]
-struct MadeTurn {
+struct SteppedTurn {
     t: Nanos,
     has_transition: bool,
     text: String,
 }
 
 /// The turns of a record up to the last replayed turn.
-struct Turns<'r> {
+struct ReplayedTurns<'r> {
     replay: &'r mut dyn RecordedRun,
     until: Option<Nanos>,
-    made: Vec<MadeTurn>,
+    made: Vec<SteppedTurn>,
     /// Number of turns up to the turn that is shown.
     place: usize,
     /// Reason why there are no more turns, once the end is reached.
@@ -67,7 +67,7 @@ pub(crate) fn step(
     is_typed: bool,
 ) -> Result<Steps, Failure> {
     let (mut lines, mut out) = (commands.lines(), io::stdout().lock());
-    let mut turns = Turns { replay, until, made: Vec::new(), place: 0, end: None, differs: false, plan: None };
+    let mut turns = ReplayedTurns { replay, until, made: Vec::new(), place: 0, end: None, differs: false, plan: None };
     let (mut answer, mut is_refused) = (turns.forward(1)?, false);
     loop {
         let prompt = if is_typed { "> " } else { "" };
@@ -76,38 +76,38 @@ pub(crate) fn step(
         answer = match turns.command(line.trim()) {
             Ok(Some(text)) => text,
             Ok(None) => break,
-            Err(Refused::Sentence(sentence)) => {
+            Err(RefusedCommand::Sentence(sentence)) => {
                 is_refused |= !is_typed;
                 // Errors are printed between the answers, as in the shell, because their order matters.
                 let _ = writeln!(io::stderr(), "error: {sentence}");
                 String::new()
             }
-            Err(Refused::Failure(failure)) => return Err(failure),
+            Err(RefusedCommand::Failure(failure)) => return Err(failure),
         };
     }
     Ok(Steps { differs: turns.differs, is_refused })
 }
 
 /// Reason why a command is not carried out.
-enum Refused {
+enum RefusedCommand {
     /// The command is wrong; contains the error message.
     Sentence(String),
     /// A plan cannot be compiled.
     Failure(Failure),
 }
 
-impl From<Failure> for Refused {
+impl From<Failure> for RefusedCommand {
     fn from(failure: Failure) -> Self {
         Self::Failure(failure)
     }
 }
 
-impl Turns<'_> {
+impl ReplayedTurns<'_> {
     /// Carries out a command; returns its answer, or `None` for the end of the session.
-    fn command(&mut self, line: &str) -> Result<Option<String>, Refused> {
+    fn command(&mut self, line: &str) -> Result<Option<String>, RefusedCommand> {
         let (word, argument) = line.split_once(' ').map_or((line, ""), |(word, argument)| (word, argument.trim()));
         if ["next", "help", "quit"].contains(&word) && !argument.is_empty() {
-            return Err(Refused::Sentence(format!("`{word}` takes no arguments")));
+            return Err(RefusedCommand::Sentence(format!("`{word}` takes no arguments")));
         }
         match word {
             "" | "step" => Ok(Some(self.forward(count(word, argument)?)?)),
@@ -116,7 +116,7 @@ impl Turns<'_> {
             "to" => {
                 let found =
                     if argument.is_empty() { String::new() } else { format!("; found `{}`", Printable(argument)) };
-                let refused = |_| Refused::Sentence(format!("`to` takes a time, as in `to 5s`{found}"));
+                let refused = |_| RefusedCommand::Sentence(format!("`to` takes a time, as in `to 5s`{found}"));
                 let time = run_time(argument).map_err(refused)?;
                 Ok(Some(self.to(time)?))
             }
@@ -129,7 +129,7 @@ impl Turns<'_> {
                 let names: Vec<_> = COMMANDS.iter().filter_map(|(command, _)| command.split(' ').next()).collect();
                 let near = did_you_mean(word, &names);
                 let near = if near.is_empty() { ": `help` lists them".to_owned() } else { near };
-                Err(Refused::Sentence(format!("there is no command `{}`{near}", Printable(word))))
+                Err(RefusedCommand::Sentence(format!("there is no command `{}`{near}", Printable(word))))
             }
         }
     }
@@ -200,11 +200,11 @@ impl Turns<'_> {
                 let is_other = self.plan.replace(plan).is_some_and(|before| before != plan);
                 let has_transition = is_other || !turn.laws.is_empty() || !turn.recorded.steps.is_empty();
                 let t = turn.recorded.t;
-                self.made.push(MadeTurn { t, has_transition, text: text(&turn) });
+                self.made.push(SteppedTurn { t, has_transition, text: text(&turn) });
                 return Ok(true);
             }
-            Some(Err(Stop::Failed(failure))) => return Err(failure),
-            Some(Err(Stop::Unread(error))) => {
+            Some(Err(ReplayStop::Failed(failure))) => return Err(failure),
+            Some(Err(ReplayStop::Unread(error))) => {
                 self.differs = true;
                 format!("no turn follows: {error}")
             }
@@ -218,13 +218,13 @@ impl Turns<'_> {
 }
 
 /// Reads a number of turns.
-fn count(word: &str, argument: &str) -> Result<usize, Refused> {
+fn count(word: &str, argument: &str) -> Result<usize, RefusedCommand> {
     if argument.is_empty() {
         return Ok(1);
     }
     let count = argument.parse().ok().filter(|count| *count > 0);
     count.ok_or_else(|| {
-        Refused::Sentence(format!("`{word}` takes a number of turns from 1; found `{}`", Printable(argument)))
+        RefusedCommand::Sentence(format!("`{word}` takes a number of turns from 1; found `{}`", Printable(argument)))
     })
 }
 

@@ -47,7 +47,7 @@ impl DrivenPath {
     /// short.
     pub(crate) fn back(&self, frame: Radians) -> Option<String> {
         let reversed: Vec<Place> = self.places.iter().rev().copied().collect();
-        let line = Line::through(smoothed(&reversed));
+        let line = StraightLine::through(smoothed(&reversed));
         (line.length() >= SHORTEST).then(|| rows(&line, frame))
     }
 }
@@ -68,13 +68,13 @@ fn smoothed(places: &[Place]) -> Vec<Place> {
 }
 
 /// A line through places, parameterized by the length along it.
-struct Line {
+struct StraightLine {
     places: Vec<Place>,
     /// Length from the start of the line to each place, in metres.
     lengths: Vec<f64>,
 }
 
-impl Line {
+impl StraightLine {
     fn through(places: Vec<Place>) -> Self {
         let mut lengths = Vec::with_capacity(places.len());
         let (mut length, mut last) = (0.0, None);
@@ -108,7 +108,7 @@ impl Line {
 }
 
 /// Writes the rows of a path along a line, which begins at rest and ends at full speed.
-fn rows(line: &Line, frame: Radians) -> String {
+fn rows(line: &StraightLine, frame: Radians) -> String {
     let (ramp, length) = (SPEED / RAMP, line.length());
     let on_ramp = RAMP * ramp * ramp / 2.0;
     let end = if length < on_ramp { libm::sqrt(2.0 * length / RAMP) } else { ramp + (length - on_ramp) / SPEED };

@@ -29,7 +29,7 @@ pub(crate) struct WayRecorder {
 }
 
 /// Data of a turn that the recorder needs.
-pub(crate) struct RecordedTurn<'t> {
+pub(crate) struct WayTurn<'t> {
     /// Pose by odometry.
     pub(crate) here: &'t Pose,
     /// The robot's paths.
@@ -60,8 +60,8 @@ impl WayRecorder {
     ///
     /// # Errors
     /// Fails with a message if the way back is not a valid path.
-    pub(crate) fn take(&mut self, turn: &RecordedTurn<'_>) -> Result<Option<String>, String> {
-        let RecordedTurn { here, paths, law, has_changed } = turn;
+    pub(crate) fn take(&mut self, turn: &WayTurn<'_>) -> Result<Option<String>, String> {
+        let WayTurn { here, paths, law, has_changed } = turn;
         let frame = *self.frame.get_or_insert(Frame(here.theta));
         let is_recorded = law.is_some_and(|law| ["path ", "Follow "].iter().any(|name| law.starts_with(name)));
         let ended = if *has_changed { self.way.take() } else { None };
@@ -105,7 +105,7 @@ impl Recorder<Sensed> for WayRecorder {
     }
 
     fn turn(&mut self, y: &Sensed, law: Option<&str>, has_changed: bool) -> Option<String> {
-        let turn = RecordedTurn { here: &y.odometry, paths: y.paths, law, has_changed };
+        let turn = WayTurn { here: &y.odometry, paths: y.paths, law, has_changed };
         self.take(&turn).err().map(|sentence| format!("warning: {sentence}"))
     }
 }

@@ -19,7 +19,8 @@ use crate::replay;
 /// Fails if the record cannot be read, or if the new record cannot be written.
 pub(super) fn cut(log: &Path, until: Nanos, file: &Path) -> Result<ExitCode, Failure> {
     let (begin, records) = replay::record(log)?;
-    let mut part = Part { frames: Frames::default(), to: RecordFile::new(BufWriter::new(created(file)?)), turns: 0 };
+    let mut part =
+        CutRecord { frames: Frames::default(), to: RecordFile::new(BufWriter::new(created(file)?)), turns: 0 };
     for turn in records.with_messages() {
         let (turn, messages) = match turn {
             Ok(turn) => turn,
@@ -41,13 +42,13 @@ pub(super) fn cut(log: &Path, until: Nanos, file: &Path) -> Result<ExitCode, Fai
 }
 
 /// A record that is being written.
-struct Part<W: io::Write> {
+struct CutRecord<W: io::Write> {
     frames: Frames,
     to: RecordFile<W>,
     turns: u64,
 }
 
-impl<W: io::Write> Part<W> {
+impl<W: io::Write> CutRecord<W> {
     fn turn(&mut self, begin: &Begin, turn: RecordedTurn, messages: Vec<Message>) -> io::Result<()> {
         let mut bytes = Vec::new();
         let RecordedTurn { number, t, y, sent, applied, plan, state, steps, changes, overruled } = turn;

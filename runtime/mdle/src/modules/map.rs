@@ -23,13 +23,13 @@ const PINGS: &str = "pings";
 #[derive(Debug, Clone)]
 pub(crate) struct MapRun {
     files: MapFiles,
-    heard: Arc<Mutex<Heard>>,
+    heard: Arc<Mutex<MapPings>>,
     making: Arc<Mutex<Making>>,
 }
 
 /// Pings that the robot has heard.
 #[derive(Debug)]
-struct Heard {
+struct MapPings {
     order: PingOrder,
     /// Pings that are not in the map yet, with the times of their turns.
     waiting: VecDeque<(Nanos, GridPing)>,
@@ -66,7 +66,7 @@ impl MapRun {
     /// Returns the map of a run that begins at this pose, for these files.
     pub(crate) fn new(origin: Pose, files: MapFiles) -> Self {
         let making = Making { maker: MapMaker::new(), is_over: false };
-        let heard = Heard { order: PingOrder::new(origin), waiting: VecDeque::new(), count: 0, has_begun: false };
+        let heard = MapPings { order: PingOrder::new(origin), waiting: VecDeque::new(), count: 0, has_begun: false };
         Self { files, heard: Arc::new(Mutex::new(heard)), making: Arc::new(Mutex::new(making)) }
     }
 

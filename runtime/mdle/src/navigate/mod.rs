@@ -15,7 +15,7 @@ use mdle_runtime::{Printable, Sensed};
 use crate::arguments::Navigate;
 use crate::failure::{self, Failure};
 use crate::plans::texts;
-use crate::route::{Edge, LandmarkGraph, LandmarkMap, Leg, Look, Route, leg};
+use crate::route::{Edge, LandmarkGraph, LandmarkMap, Leg, LookPlan, Route, leg};
 use crate::targets;
 use landmarks::Landmarks;
 
@@ -57,7 +57,7 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     failure::print_line(&format!("route: {}", words(&route)))?;
     let maps = landmarks.maps(file.0, landmarks.axis(&arguments.from))?;
     let places = landmarks.places(landmarks.axis(&arguments.from));
-    let look = (!maps.is_empty()).then(|| Look::of(maps, &arguments.graph, &target)).transpose()?;
+    let look = (!maps.is_empty()).then(|| LookPlan::of(maps, &arguments.graph, &target)).transpose()?;
     if let Some(sentence) = look.as_ref().and_then(|look| lonely(&look.maps)) {
         failure::warning(&sentence);
     }

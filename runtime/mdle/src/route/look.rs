@@ -33,13 +33,13 @@ pub(crate) struct LandmarkMap {
 }
 
 /// The compiled plan of a look around, and the maps with which landmarks are recognized.
-pub(crate) struct Look {
+pub(crate) struct LookPlan {
     pub(crate) machine: Machine,
     pub(crate) input: Input,
     pub(crate) maps: Vec<LandmarkMap>,
 }
 
-impl Look {
+impl LookPlan {
     /// Compiles the plan of a look around. Messages go to standard error.
     ///
     /// # Errors
@@ -59,7 +59,7 @@ impl Look {
 }
 
 /// Echoes that a robot hears while it turns at a landmark.
-pub(super) struct Heard {
+pub(super) struct LookEchoes {
     /// Name of the landmark at which the robot should be.
     expected: String,
     /// `true` if the robot has driven to the landmark; `false` if it was placed there, along the landmark's first axis.
@@ -79,7 +79,7 @@ pub(super) struct Stand {
     pub(super) drift: Radians,
 }
 
-impl Heard {
+impl LookEchoes {
     /// Begins the look around of a robot that should be at the landmark `expected`. `driven` is the output with which
     /// the robot arrived there, or `None` if it was placed there.
     pub(super) fn at(expected: &str, driven: Option<&Sensed>) -> Self {

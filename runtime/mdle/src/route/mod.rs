@@ -16,7 +16,7 @@ use mdle_files::{Input, Target, plan};
 use crate::failure::{self, Failure};
 
 pub(crate) use graph::{Edge, LandmarkGraph};
-pub(crate) use look::{LandmarkMap, Look};
+pub(crate) use look::{LandmarkMap, LookPlan};
 pub(crate) use navigator::drive;
 pub(crate) use reckoning::LandmarkPlace;
 
@@ -24,7 +24,7 @@ pub(crate) use reckoning::LandmarkPlace;
 pub(crate) struct Route {
     pub(crate) legs: Vec<Leg>,
     /// The look around at landmarks that have maps; `None` if no landmark has a map.
-    pub(crate) look: Option<Look>,
+    pub(crate) look: Option<LookPlan>,
     /// The known places of landmarks.
     pub(crate) places: Vec<LandmarkPlace>,
 }

@@ -12,7 +12,7 @@ use mdle_host::{AfterPlan, Call, Pilot, PilotFault, PilotTurn, RunTerms, Transit
 use mdle_record::RecordedChange;
 use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Pose, Printable, Radians, Robot, Sensed, Turn, Twist};
 
-use super::look::{Heard, LOOK, LandmarkMap, Look, Stand};
+use super::look::{LOOK, LandmarkMap, LookEchoes, LookPlan, Stand};
 use super::reckoning::{LandmarkPlace, Reckoning};
 use super::{Edge, Leg, Route, leg_text};
 use crate::failure::Failure;
@@ -42,7 +42,7 @@ struct Navigator<'l, A: EngineAlphabet> {
     legs: VecDeque<&'l ReadyLeg<A>>,
     look: Option<&'l ReadyLook<'l, A>>,
     /// Echoes of the current look around; `None` if the robot does not look around.
-    heard: Option<Heard>,
+    heard: Option<LookEchoes>,
     reckoning: Reckoning<'l>,
     /// Heading drift of odometry, as measured at the last landmark with a map.
     drift: Radians,
@@ -77,7 +77,7 @@ where
     Ok(mdle_host::run_piloted::<T, _>(&*first.name, call, &plan, pilot, None))
 }
 
-fn ready_look<'l, A: EngineAlphabet>(look: &'l Look, target: &Target) -> Result<ReadyLook<'l, A>, Failure> {
+fn ready_look<'l, A: EngineAlphabet>(look: &'l LookPlan, target: &Target) -> Result<ReadyLook<'l, A>, Failure> {
     let loaded = Arc::new(load::load::<A>(&look.machine, &look.input.sources, &target.alphabet)?);
     let (files, facts) = (texts(&look.input).into(), PlanFacts::default());
     let plan = StoredPlan { name: LOOK.into(), files, loaded, facts };
@@ -144,7 +144,7 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
             self.messages.push(format!("at {}", Printable(landmark)));
             return None;
         };
-        self.heard = Some(Heard::at(landmark, driven));
+        self.heard = Some(LookEchoes::at(landmark, driven));
         Some(&look.plan)
     }
 
@@ -187,7 +187,7 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
     ///
     /// # Errors
     /// Fails with a message if the look around was interrupted, or if the robot is not at the landmark.
-    fn has_looked(&mut self, heard: &Heard, transitions: &Transitions) -> Result<(), String> {
+    fn has_looked(&mut self, heard: &LookEchoes, transitions: &Transitions) -> Result<(), String> {
         let landmark = Printable(heard.expected());
         if let Some(cause) = self.cut_short(LOOK, transitions) {
             return Err(format!("the turn at {landmark} is not done: it was ended by `{cause}`"));

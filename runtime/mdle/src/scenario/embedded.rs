@@ -10,9 +10,9 @@ use mdle_engine::Library;
 use mdle_host::Program;
 
 use super::arguments::ScenarioOptions;
-use super::files::Files;
+use super::files::ScenarioFiles;
 use super::{ReadyPlan, run_with};
-use crate::arguments::{Asked, parse};
+use crate::arguments::{ParsedCommand, parse};
 use crate::failure::Failure;
 use crate::modules;
 
@@ -27,12 +27,12 @@ pub fn scenario_files(path: &Path) -> Result<Vec<(String, Vec<u8>)>, u8> {
 }
 
 fn read(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let files = Files::of_system(path);
+    let files = ScenarioFiles::of_system(path);
     ReadyPlan::read(&files, &ScenarioOptions::default())?;
     let contents = files.into_contents();
     // Checks that the scenario can be read from the copies alone, which are looked up by name, without resolving links
     // and folders.
-    ReadyPlan::read(&Files::inside(path, contents.clone()), &ScenarioOptions::default())?;
+    ReadyPlan::read(&ScenarioFiles::inside(path, contents.clone()), &ScenarioOptions::default())?;
     let is_other = |(file, _): &(PathBuf, _)| file != path;
     let (mut others, mut own): (Vec<_>, Vec<_>) = contents.into_iter().partition(is_other);
     own.append(&mut others);
@@ -57,10 +57,10 @@ fn run(program: Program<'_>, files: &[(&str, &[u8])]) -> Result<ExitCode, Failur
     let path = files.first().map_or("", |(path, _)| *path);
     // Records contain this command, which repeats the run from the scenario's file.
     let words = ["mdle", "run", path].map(OsString::from).into_iter().chain(std::env::args_os().skip(1));
-    let Asked::Run(arguments) = parse(words.collect())? else { return Ok(ExitCode::SUCCESS) };
+    let ParsedCommand::Run(arguments) = parse(words.collect())? else { return Ok(ExitCode::SUCCESS) };
     let options = ScenarioOptions::read(&arguments, Some(program))?;
     let contents: BTreeMap<_, _> = files.iter().map(|(file, bytes)| (PathBuf::from(file), bytes.to_vec())).collect();
     let mut library = Library::new();
     modules::shipped(&mut library);
-    run_with(&options, &Files::inside(Path::new(path), contents), &library)
+    run_with(&options, &ScenarioFiles::inside(Path::new(path), contents), &library)
 }

@@ -15,7 +15,7 @@ use crate::failure;
 const SIM: &str = "sim";
 
 /// The files of a scenario, by the names that the scenario and its plans give them.
-pub(super) struct Files {
+pub(super) struct ScenarioFiles {
     /// Path of the scenario's own file.
     pub(super) path: PathBuf,
     /// Contents of the files that were read, or of all files inside an executable.
@@ -26,7 +26,7 @@ pub(super) struct Files {
     are_inside: bool,
 }
 
-impl Files {
+impl ScenarioFiles {
     /// Returns the files of the file system, for the scenario in the file at `path`.
     pub(super) fn of_system(path: &Path) -> Self {
         Self { path: path.to_owned(), contents: RefCell::default(), texts: OnceCell::new(), are_inside: false }
@@ -81,7 +81,7 @@ impl Files {
         if self.are_inside { target(Some(SIM)) } else { Settings::beside(path)?.target(Some(SIM)) }
     }
 
-    /// Returns the plan in the file at `path`. After compiling it, the caller passes the result to [`Files::compiled`].
+    /// Returns the plan in the file at `path`. After compiling it, the caller passes the result to [`ScenarioFiles::compiled`].
     ///
     /// # Errors
     /// Fails if the file cannot be read or is not text.

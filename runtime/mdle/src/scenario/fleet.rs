@@ -8,8 +8,8 @@ use mdle_host::Interruption;
 use mdle_runtime::{Nanos, Plan as _, Sensed};
 use mdle_sim::Footprint;
 
-use super::member::{Runner, Standing};
-use super::output::Output;
+use super::member::{MemberState, Runner};
+use super::output::ScenarioOutput;
 use super::setup::Scenario;
 
 /// Exit status for a run in which a plan did not end.
@@ -47,7 +47,7 @@ impl Fleet {
     /// In each turn, the robots move, one after the other in the order of the file, each among the current
     /// poses of the others; then all robots sense; then all plans make their turns, with the states that the
     /// link delivered from earlier turns.
-    pub(super) fn run(mut self, timeout: Duration, interruption: &Interruption, output: &mut Output) -> u8 {
+    pub(super) fn run(mut self, timeout: Duration, interruption: &Interruption, output: &mut ScenarioOutput) -> u8 {
         let nanos = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
         let (period, timeout) = (nanos(self.period), nanos(timeout));
         for number in 0.. {
@@ -58,7 +58,7 @@ impl Fleet {
                 let made = runner.turn(y, t, number);
                 output.turn(runner, y, t, number, &made);
             }
-            let are_driven = self.runners.iter().any(|runner| runner.standing == Standing::Drives);
+            let are_driven = self.runners.iter().any(|runner| runner.standing == MemberState::Drives);
             if !are_driven || t.0 >= timeout || output.has_failed() || interruption.is_made() {
                 self.ends(&outputs, t, output);
                 break;
@@ -106,10 +106,10 @@ impl Fleet {
     }
 
     /// Reports the end of a run at time `t` with these outputs, and stops the robots that still drive.
-    fn ends(&mut self, outputs: &[Sensed], t: Nanos, output: &mut Output) {
+    fn ends(&mut self, outputs: &[Sensed], t: Nanos, output: &mut ScenarioOutput) {
         for (runner, y) in self.runners.iter_mut().zip(outputs) {
             let law = runner.law();
-            if runner.standing == Standing::Drives {
+            if runner.standing == MemberState::Drives {
                 output.ends(runner, (y, t), law.as_deref());
             }
             runner.stop();
@@ -122,8 +122,11 @@ impl Fleet {
     }
 
     fn status(&self) -> u8 {
-        let has = |is_so: fn(&Standing) -> bool| self.runners.iter().any(|runner| is_so(&runner.standing));
-        match (has(|standing| matches!(standing, Standing::Failed(_))), has(|standing| *standing != Standing::Over)) {
+        let has = |is_so: fn(&MemberState) -> bool| self.runners.iter().any(|runner| is_so(&runner.standing));
+        match (
+            has(|standing| matches!(standing, MemberState::Failed(_))),
+            has(|standing| *standing != MemberState::Over),
+        ) {
             (true, _) => super::FAULT,
             (false, true) => TIMED_OUT,
             (false, false) => 0,

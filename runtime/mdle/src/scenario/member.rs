@@ -16,16 +16,16 @@ use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{RobotEars, Sim, Simulated};
 
 use super::sent_plan::SentPlan;
-use super::setup::{Member, Scenario};
+use super::setup::{Scenario, ScenarioRobot};
 use crate::modules::{AudioSource, SoundInput};
 use crate::plans;
-use crate::way_recorder::{RecordedTurn, WayRecorder};
+use crate::way_recorder::{WayRecorder, WayTurn};
 
 /// A running robot.
 pub(super) struct Runner {
     pub(super) name: String,
     pub(super) robot: Simulated,
-    pub(super) standing: Standing,
+    pub(super) standing: MemberState,
     engine: Engine<SimAlphabet>,
     input: Twist,
     transitions: Transitions,
@@ -45,7 +45,7 @@ pub(super) struct Runner {
 
 /// State of a robot in a scenario.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Standing {
+pub(super) enum MemberState {
     /// The robot's plan runs.
     Drives,
     /// The robot's plan is over.
@@ -78,14 +78,26 @@ impl Runner {
     /// # Errors
     /// Fails with a message if a module is refused.
     pub(super) fn new(
-        member: Member,
+        member: ScenarioRobot,
         air: Air,
         scenario: &Scenario,
         library: &Library<Sensed>,
         is_recorded: bool,
     ) -> Result<Self, String> {
-        let Member { name, mut robot, start, loaded, paths, records, killed, ears, shares, plans_from, sends, .. } =
-            member;
+        let ScenarioRobot {
+            name,
+            mut robot,
+            start,
+            loaded,
+            paths,
+            records,
+            killed,
+            ears,
+            shares,
+            plans_from,
+            sends,
+            ..
+        } = member;
         let microphones = Microphones::default();
         let terms = RunTerms {
             time: Time::Stepped(Pace::Max),
@@ -116,7 +128,7 @@ impl Runner {
         Ok(Self {
             name,
             robot,
-            standing: Standing::Drives,
+            standing: MemberState::Drives,
             engine,
             input: Twist::default(),
             transitions: Transitions::default(),
@@ -160,7 +172,7 @@ impl Runner {
 
     /// Stops the robot because of a fault.
     fn fails(&mut self, sentence: String) {
-        self.standing = Standing::Failed(sentence);
+        self.standing = MemberState::Failed(sentence);
         self.input = Twist::default();
     }
 
@@ -168,12 +180,12 @@ impl Runner {
     pub(super) fn turn(&mut self, y: &Sensed, t: Nanos, number: u64) -> MemberTurn {
         let (lines, changes) = (Vec::new(), Vec::new());
         let mut made = MemberTurn { lines, law: None, path: None, begins: false, kind: None, changes };
-        if self.standing == Standing::Drives && self.killed.is_some_and(|killed| t >= killed) {
-            self.standing = Standing::Killed;
+        if self.standing == MemberState::Drives && self.killed.is_some_and(|killed| t >= killed) {
+            self.standing = MemberState::Killed;
             made.lines.push("its program was killed".to_owned());
         }
         self.input = Twist::default();
-        if self.standing != Standing::Drives {
+        if self.standing != MemberState::Drives {
             return made;
         }
         if let Some((ears, microphones)) = &mut self.ears {
@@ -196,7 +208,7 @@ impl Runner {
                 });
                 self.reports(&mut made);
                 if turn == Turn::Over {
-                    self.standing = Standing::Over;
+                    self.standing = MemberState::Over;
                 }
                 self.input = turn.input();
             }
@@ -211,7 +223,7 @@ impl Runner {
             setpoints: setpoints.to_vec(),
         }));
         self.engine.messages(&mut |message| made.lines.push(message.to_owned()));
-        if let Standing::Failed(sentence) = &self.standing {
+        if let MemberState::Failed(sentence) = &self.standing {
             made.lines.push(format!("error: {sentence}"));
         }
         made.path = self.records(y, made.law.as_ref().map(|(_, law)| law.as_str()), &mut made.lines);
@@ -249,7 +261,7 @@ impl Runner {
     fn records(&mut self, y: &Sensed, law: Option<&str>, lines: &mut Vec<String>) -> Option<(&'static str, String)> {
         let recorder = self.recorder.as_mut()?;
         let has_changed = !self.transitions.is_empty();
-        let turn = RecordedTurn { here: &y.odometry, paths: self.robot.paths, law, has_changed };
+        let turn = WayTurn { here: &y.odometry, paths: self.robot.paths, law, has_changed };
         let taken = recorder.take(&turn);
         self.robot.paths = recorder.store().unwrap_or(self.robot.paths);
         self.replaced = recorder.take_replaced();
@@ -263,7 +275,7 @@ impl Runner {
     }
 }
 
-impl Standing {
+impl MemberState {
     /// Returns a short description of the robot's state at the end of a run. `law` is the law that still runs; `None`
     /// if no law runs.
     pub(super) fn words(&self, law: Option<&str>) -> String {

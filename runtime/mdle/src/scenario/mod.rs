@@ -30,9 +30,9 @@ use arguments::ScenarioOptions;
 use crowd::CrowdSetup;
 pub use embedded::{run_scenario, scenario_files};
 use file::ScenarioError;
-use files::Files;
+use files::ScenarioFiles;
 use fleet::Fleet;
-use output::Output;
+use output::ScenarioOutput;
 use setup::{Scenario, SetupError};
 
 /// Exit status for a scenario with a failure, such as a file that could not be written.
@@ -50,11 +50,11 @@ pub fn is_scenario(file: &Path) -> bool {
 /// Fails if the scenario cannot be run.
 pub(crate) fn run(arguments: &RunArguments, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     let options = ScenarioOptions::read(arguments, None)?;
-    run_with(&options, &Files::of_system(&arguments.file), library)
+    run_with(&options, &ScenarioFiles::of_system(&arguments.file), library)
 }
 
 /// Runs the scenario in these files.
-fn run_with(options: &ScenarioOptions, files: &Files, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
+fn run_with(options: &ScenarioOptions, files: &ScenarioFiles, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     match ReadyPlan::read(files, options)? {
         ReadyPlan::Crowd(crowd) => crowd::run(crowd, options),
         ReadyPlan::Robots(scenario) => run_robots(*scenario, options, library),
@@ -69,7 +69,7 @@ enum ReadyPlan {
 
 impl ReadyPlan {
     /// Reads the scenario in these files, for a run with these options. Messages go to standard error.
-    fn read(files: &Files, options: &ScenarioOptions) -> Result<Self, Failure> {
+    fn read(files: &ScenarioFiles, options: &ScenarioOptions) -> Result<Self, Failure> {
         let path = &files.path;
         let text = files.text(path, file::LARGEST);
         let text = text.map_err(|error| Failure::Usage(format!("{} cannot be read: {error}", path.display())))?;
@@ -93,7 +93,7 @@ fn run_robots(scenario: Scenario, options: &ScenarioOptions, library: &Library<S
         let help = "name a path that the plan replays, as in `records = \"NAME\"`, or leave the option out";
         return Err(Failure::Usage(format!("--recorded-paths: no robot of the scenario records a path\nhelp: {help}")));
     }
-    let mut output = Output::open(options, &scenario).map_err(Failure::Usage)?;
+    let mut output = ScenarioOutput::open(options, &scenario).map_err(Failure::Usage)?;
     let timeout = options.timeout.unwrap_or(scenario.timeout);
     let fleet = match Fleet::new(scenario, library, output.records()) {
         Ok(fleet) => fleet,

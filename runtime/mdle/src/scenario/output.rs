@@ -10,16 +10,16 @@ use mdle_runtime::{Nanos, Printable, Sensed};
 use mdle_sim::{FleetDrawing, TripDrawing};
 
 use super::arguments::ScenarioOptions;
-use super::member::{MemberTurn, Runner, Standing};
-use super::records::{Records, unwritten};
+use super::member::{MemberState, MemberTurn, Runner};
+use super::records::{ScenarioRecords, unwritten};
 use super::setup::Scenario;
 
 /// Reports and files of a run.
-pub(super) struct Output {
+pub(super) struct ScenarioOutput {
     out: BufWriter<io::Stdout>,
-    log: Option<Table>,
-    records: Option<Records>,
-    trail: Option<Table>,
+    log: Option<GrowingFile>,
+    records: Option<ScenarioRecords>,
+    trail: Option<GrowingFile>,
     plot: Option<(PathBuf, FleetDrawing)>,
     trips: Option<(PathBuf, TripDrawing)>,
     paths: Option<PathBuf>,
@@ -28,12 +28,12 @@ pub(super) struct Output {
 }
 
 /// A file that grows during the run.
-struct Table {
+struct GrowingFile {
     path: PathBuf,
     file: BufWriter<File>,
 }
 
-impl Table {
+impl GrowingFile {
     fn create(path: &Path) -> Result<Self, String> {
         let file = File::create(path).map_err(|error| unwritten(path, &error))?;
         Ok(Self { path: path.to_owned(), file: BufWriter::new(file) })
@@ -44,13 +44,13 @@ impl Table {
     }
 }
 
-impl Output {
+impl ScenarioOutput {
     /// Opens the files that the options name.
     ///
     /// # Errors
     /// Fails with a message if a file cannot be written.
     pub(super) fn open(options: &ScenarioOptions, scenario: &Scenario) -> Result<Self, String> {
-        let table = |path: &Option<PathBuf>| path.as_deref().map(Table::create).transpose();
+        let table = |path: &Option<PathBuf>| path.as_deref().map(GrowingFile::create).transpose();
         let title = setup(scenario);
         let record = options.log.as_deref().filter(|log| is_record(log));
         let log = options.log.clone().filter(|log| !is_record(log));
@@ -72,7 +72,7 @@ impl Output {
             File::create(path).map_err(|error| unwritten(path, &error))?;
         }
         // Records are created last: no other file can then fail and leave them without a run.
-        output.records = record.map(|log| Records::create(log, scenario, &options.command)).transpose()?;
+        output.records = record.map(|log| ScenarioRecords::create(log, scenario, &options.command)).transpose()?;
         Ok(output)
     }
 
@@ -85,8 +85,8 @@ impl Output {
             let recorded = runner.recorded(PilotTurn { y, t, number }, made);
             let written = recorded.map_or(Ok(()), |turn| records.turn(&runner.name, turn));
             let written = match &runner.standing {
-                Standing::Drives => written,
-                ended @ (Standing::Over | Standing::Killed | Standing::Failed(_)) => {
+                MemberState::Drives => written,
+                ended @ (MemberState::Over | MemberState::Killed | MemberState::Failed(_)) => {
                     written.and_then(|()| records.end(&runner.name, (y, t), &ended.words(None)))
                 }
             };
@@ -137,7 +137,7 @@ impl Output {
 
     /// Removes the records of a run that cannot begin.
     pub(super) fn discard(self) {
-        self.records.into_iter().for_each(Records::remove);
+        self.records.into_iter().for_each(ScenarioRecords::remove);
     }
 
     /// Returns `true` if the robots are recorded.
@@ -186,7 +186,7 @@ impl Output {
             self.note(written);
         }
         for table in [self.log.take(), self.trail.take()].into_iter().flatten() {
-            let Table { path, mut file } = table;
+            let GrowingFile { path, mut file } = table;
             let written = file.flush().map_err(|error| unwritten(&path, &error));
             self.note(written);
         }

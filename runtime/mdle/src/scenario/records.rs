@@ -9,10 +9,10 @@ use mdle_record::Begin;
 use mdle_runtime::{Nanos, Plan, Sensed};
 use mdle_sim::Sim;
 
-use super::setup::{Member, Scenario};
+use super::setup::{Scenario, ScenarioRobot};
 
 /// The records that are being written.
-pub(super) struct Records(Vec<MemberRecord>);
+pub(super) struct ScenarioRecords(Vec<MemberRecord>);
 
 /// The record of a robot.
 struct MemberRecord {
@@ -25,7 +25,7 @@ struct MemberRecord {
     turn: u64,
 }
 
-impl Records {
+impl ScenarioRecords {
     /// Creates the records of a scenario: `run.mcap` becomes `run.ada.mcap` for the robot `ada`. `command` is the
     /// command that repeats the run.
     ///
@@ -100,8 +100,8 @@ pub(super) fn unwritten(path: &Path, error: &io::Error) -> String {
 }
 
 /// Returns the first entry of a robot's record.
-fn of_member(member: &Member, scenario: &Scenario, command: &str) -> Begin {
-    let Member { loaded, files, records, .. } = member;
+fn of_member(member: &ScenarioRobot, scenario: &Scenario, command: &str) -> Begin {
+    let ScenarioRobot { loaded, files, records, .. } = member;
     let plan = loaded.plan();
     let period = Nanos(u64::try_from(scenario.period.as_nanos()).unwrap_or(u64::MAX));
     let parts = [

@@ -16,7 +16,7 @@ use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Body, Make, RobotEars, Sim, Simulated, Start, StartNoise, Walls, World};
 
 use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText, duration};
-use super::files::Files;
+use super::files::ScenarioFiles;
 use super::sent_plan::{SentPlan, sent_by};
 use crate::arguments::head;
 use crate::failure::{self, Failure};
@@ -37,13 +37,13 @@ pub(super) struct Scenario {
     pub(super) period: Duration,
     /// Faults of the link.
     pub(super) faults: Faults,
-    pub(super) members: Vec<Member>,
+    pub(super) members: Vec<ScenarioRobot>,
     /// The target of all robots.
     pub(super) target: Arc<Target>,
 }
 
 /// A robot of a scenario.
-pub(super) struct Member {
+pub(super) struct ScenarioRobot {
     pub(super) name: String,
     /// Body of the robot.
     pub(super) body: Body,
@@ -93,7 +93,7 @@ impl Scenario {
     /// # Errors
     /// Fails if a value of the file is invalid, if a file that it names cannot be read, or if a plan has
     /// errors.
-    pub(super) fn read(text: ScenarioText, files: &Files, seed: Option<u64>) -> Result<Self, SetupError> {
+    pub(super) fn read(text: ScenarioText, files: &ScenarioFiles, seed: Option<u64>) -> Result<Self, SetupError> {
         let seed = seed.or(text.seed.as_ref().map(|seed| *seed.get_ref()));
         let period = text.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
         let timeout = text.timeout.as_ref().map(|timeout| duration(timeout, 0.0, 1e9)).transpose()?;
@@ -119,7 +119,7 @@ impl Scenario {
     }
 
     /// Creates a robot, which must not overlap with the robots before it.
-    fn member(&self, text: &RobotText, from: &Files, names: &[&str]) -> Result<Member, SetupError> {
+    fn member(&self, text: &RobotText, from: &ScenarioFiles, names: &[&str]) -> Result<ScenarioRobot, SetupError> {
         let name = text.name.get_ref();
         let (loaded, files) = plan(&text.file, text.plan.as_ref(), from, Some((text, names)))?;
         let plan = loaded.plan();
@@ -161,7 +161,21 @@ impl Scenario {
         }
         let plans_from = text.plans_from.iter().map(|other| other.get_ref().clone()).collect();
         let (name, shares, sends) = (name.clone(), text.shares.clone(), Vec::new());
-        Ok(Member { name, body, robot, start, loaded, files, paths, records, killed, ears, shares, plans_from, sends })
+        Ok(ScenarioRobot {
+            name,
+            body,
+            robot,
+            start,
+            loaded,
+            files,
+            paths,
+            records,
+            killed,
+            ears,
+            shares,
+            plans_from,
+            sends,
+        })
     }
 
     /// Returns the ears of a robot, and the radius of its head.
@@ -191,7 +205,7 @@ pub(super) type PlanWithFiles<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 pub(super) fn plan<A: Alphabet>(
     file: &At<PathBuf>,
     plan_name: Option<&At<String>>,
-    files: &Files,
+    files: &ScenarioFiles,
     robot: Option<(&RobotText, &[&str])>,
 ) -> Result<PlanWithFiles<A>, SetupError> {
     let (place, file) = (file.span(), files.named(file.get_ref()));
@@ -271,7 +285,7 @@ fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError 
 }
 
 /// Returns the world with the name or the file `text`, and its name.
-pub(super) fn world(text: Option<&At<String>>, files: &Files) -> Result<(World, String), ScenarioError> {
+pub(super) fn world(text: Option<&At<String>>, files: &ScenarioFiles) -> Result<(World, String), ScenarioError> {
     let Some(text) = text else {
         let world = World::parse("the empty floor", "");
         let world =
@@ -349,7 +363,7 @@ fn recorded(text: &At<String>, replayed: &[&'static str]) -> Result<&'static str
 /// Reads the paths that a plan replays. A path that is recorded may be missing.
 fn paths(
     text: &RobotText,
-    files: &Files,
+    files: &ScenarioFiles,
     names: &[&'static str],
     records: Option<&'static str>,
 ) -> Result<Vec<(&'static str, Vec<Setpoint>)>, ScenarioError> {

@@ -11,7 +11,7 @@ use super::subject::Subject;
 
 /// A cause that a text names.
 #[derive(Clone)]
-pub(super) enum Cause {
+pub(super) enum NamedCause {
     /// The completion of a law.
     Completed,
     /// Operands of interrupts, each as the number of its element and the number of the operand.
@@ -24,20 +24,20 @@ pub(super) enum Cause {
 ///
 /// # Errors
 /// Fails if the plan has no such cause.
-pub(super) fn cause(text: &At<String>, subject: &Subject) -> Result<Cause, TestFileError> {
+pub(super) fn cause(text: &At<String>, subject: &Subject) -> Result<NamedCause, TestFileError> {
     let wanted = text.get_ref().trim();
     if wanted == COMPLETED {
-        return Ok(Cause::Completed);
+        return Ok(NamedCause::Completed);
     }
     let operands = subject.operands().filter(|(.., operand)| is_operand(wanted, operand));
     let operands: Vec<_> = operands.map(|(element, number, _)| (element, number)).collect();
     if !operands.is_empty() {
-        return Ok(Cause::Operands(operands));
+        return Ok(NamedCause::Operands(operands));
     }
     let scopes = subject.machine().elements().filter(|element| !wanted.is_empty() && element.name() == wanted);
     let scopes: Vec<_> = scopes.map(|element| element.number()).collect();
     if !scopes.is_empty() {
-        return Ok(Cause::Scopes(scopes));
+        return Ok(NamedCause::Scopes(scopes));
     }
     let mut known: Vec<&str> = subject.operands().map(|(.., operand)| operand.written).collect();
     known.retain(|operand| *operand != "null");
@@ -52,26 +52,26 @@ pub(super) fn cause(text: &At<String>, subject: &Subject) -> Result<Cause, TestF
 ///
 /// # Errors
 /// Fails if no such element is left: the cause ends only a part of the plan.
-pub(super) fn ending(text: &At<String>, cause: Cause, subject: &Subject) -> Result<Cause, TestFileError> {
+pub(super) fn ending(text: &At<String>, cause: NamedCause, subject: &Subject) -> Result<NamedCause, TestFileError> {
     let (cause, is_left) = match cause {
-        Cause::Completed => {
+        NamedCause::Completed => {
             let mut laws = subject.machine().elements().filter(|element| element.completes());
             if !laws.any(|element| ends_plan(subject, element.number())) {
                 let message = "no law at the end of the plan completes";
                 let help = "expect the operand that ends the plan, or `running`";
                 return Err(TestFileError::at(text.span(), message).help(help));
             }
-            (Cause::Completed, true)
+            (NamedCause::Completed, true)
         }
-        Cause::Operands(mut operands) => {
+        NamedCause::Operands(mut operands) => {
             operands.retain(|(element, _)| ends_plan(subject, *element));
             let is_left = !operands.is_empty();
-            (Cause::Operands(operands), is_left)
+            (NamedCause::Operands(operands), is_left)
         }
-        Cause::Scopes(mut scopes) => {
+        NamedCause::Scopes(mut scopes) => {
             scopes.retain(|scope| ends_plan(subject, *scope));
             let is_left = !scopes.is_empty();
-            (Cause::Scopes(scopes), is_left)
+            (NamedCause::Scopes(scopes), is_left)
         }
     };
     if is_left {

@@ -6,7 +6,7 @@ use mdle_runtime::{Cause, Nanos, Pose, Transition, Words};
 
 /// The course of a run.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Course {
+pub(super) struct TestCourse {
     /// The atoms that began, each recorded when its law was first applied.
     pub(super) began: Vec<Began>,
     /// All transitions.
@@ -15,7 +15,7 @@ pub(super) struct Course {
     pub(super) turns: u64,
     /// Time of the last turn.
     pub(super) t: Nanos,
-    pub(super) ending: Ending,
+    pub(super) ending: TestEnd,
     /// The true pose of a simulated robot at the end of the run; `None` for a script.
     pub(super) pose: Option<Pose>,
     /// The violations of `expect.never`.
@@ -51,7 +51,7 @@ pub(super) struct CourseTransition {
 
 /// The end of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Ending {
+pub(super) enum TestEnd {
     /// The plan is over, by the last transition.
     Over,
     /// The plan was not over at the end of the script, or at the limit of the run.
@@ -75,22 +75,22 @@ pub(super) struct Breach {
 
 /// Recorder of the course of a run.
 #[derive(Debug)]
-pub(super) struct Recorder<'m> {
+pub(super) struct CourseRecorder<'m> {
     machine: &'m Machine,
-    pub(super) course: Course,
+    pub(super) course: TestCourse,
     /// Number of the current atom; `None` before the plan begins, and once it is over.
     atom: Option<u32>,
 }
 
-impl<'m> Recorder<'m> {
+impl<'m> CourseRecorder<'m> {
     /// Returns the recorder of a run of this machine, before its first turn.
     pub(super) fn new(machine: &'m Machine) -> Self {
-        let course = Course {
+        let course = TestCourse {
             began: Vec::new(),
             steps: Vec::new(),
             turns: 0,
             t: Nanos::ZERO,
-            ending: Ending::Running,
+            ending: TestEnd::Running,
             pose: None,
             breaches: Vec::new(),
         };
@@ -144,7 +144,7 @@ impl<'m> Recorder<'m> {
     }
 }
 
-impl Course {
+impl TestCourse {
     /// Returns the transition that ended the plan; `None` if the plan was not over.
     pub(super) fn last(&self) -> Option<&CourseTransition> {
         self.steps.last().filter(|step| step.to.is_none())

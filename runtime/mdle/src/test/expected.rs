@@ -8,7 +8,7 @@ use mdle_runtime::Nanos;
 use mdle_runtime::trace::Seconds;
 use mdle_sim::Goal;
 
-use super::causes::{Cause, cause, ending};
+use super::causes::{NamedCause, cause, ending};
 use super::file::{At, ExpectText, TestFileError, TransitionText};
 use super::subject::{Subject, TestCondition};
 
@@ -18,25 +18,25 @@ const LONGEST: Duration = Duration::from_secs(1_000_000_000);
 const FURTHEST: f64 = 1000.0;
 
 /// Byte range of an expectation in the test file.
-pub(super) type TextRange = Range<usize>;
+pub(super) type ByteRange = Range<usize>;
 
 /// The expectations of a test.
 pub(super) struct Expected {
-    pub(super) atoms: Option<(TextRange, Vec<AtomsNamed>)>,
-    pub(super) order: Option<(TextRange, Vec<AtomsNamed>)>,
-    pub(super) transitions: Vec<(TextRange, ExpectedTransition)>,
-    pub(super) never: Vec<(TextRange, Never)>,
-    pub(super) end: Option<(TextRange, ExpectedEnd)>,
-    pub(super) pose: Option<(TextRange, String, Goal)>,
-    pub(super) most_turns: Option<(TextRange, u64)>,
-    pub(super) most_transitions: Option<(TextRange, u64)>,
-    pub(super) most_time: Option<(TextRange, Nanos)>,
+    pub(super) atoms: Option<(ByteRange, Vec<AtomsNamed>)>,
+    pub(super) order: Option<(ByteRange, Vec<AtomsNamed>)>,
+    pub(super) transitions: Vec<(ByteRange, ExpectedTransition)>,
+    pub(super) never: Vec<(ByteRange, ForbiddenState)>,
+    pub(super) end: Option<(ByteRange, ExpectedEnd)>,
+    pub(super) pose: Option<(ByteRange, String, Goal)>,
+    pub(super) most_turns: Option<(ByteRange, u64)>,
+    pub(super) most_transitions: Option<(ByteRange, u64)>,
+    pub(super) most_time: Option<(ByteRange, Nanos)>,
 }
 
 /// Atoms that a text names.
 #[derive(Clone)]
 pub(super) struct AtomsNamed {
-    pub(super) place: TextRange,
+    pub(super) place: ByteRange,
     pub(super) text: String,
     /// For each atom, `true` if it is named.
     atoms: Vec<bool>,
@@ -48,13 +48,13 @@ pub(super) struct ExpectedTransition {
     pub(super) from: Option<AtomsNamed>,
     /// The atoms, one of which must be entered: `Some(None)` for the end of the plan, `None` for any atom or the end.
     pub(super) to: Option<Option<AtomsNamed>>,
-    pub(super) by: Option<(String, Cause)>,
+    pub(super) by: Option<(String, NamedCause)>,
     pub(super) after: Option<Nanos>,
     pub(super) within: Option<Nanos>,
 }
 
 /// A state that must not occur.
-pub(super) enum Never {
+pub(super) enum ForbiddenState {
     /// The robot is closer to an obstacle than this distance, in metres.
     Closer(f64),
     /// One of `atoms` runs while `condition` is true. Without `atoms`, any atom counts; without `condition`, the state
@@ -65,7 +65,7 @@ pub(super) enum Never {
 /// The expected end of a run.
 pub(super) enum ExpectedEnd {
     /// The plan is over by this cause.
-    By(String, Cause),
+    By(String, NamedCause),
     /// The plan is not over.
     Running,
     /// A fault ends the run.
@@ -195,7 +195,7 @@ fn end(text: &At<String>, subject: &Subject) -> Result<ExpectedEnd, TestFileErro
     })
 }
 
-fn never(text: &At<String>, subject: &Subject, is_script: bool) -> Result<Never, TestFileError> {
+fn never(text: &At<String>, subject: &Subject, is_script: bool) -> Result<ForbiddenState, TestFileError> {
     let words = text.get_ref().trim();
     if let Some(distance) = words.strip_prefix("closer than ") {
         return closer(text, distance, is_script);
@@ -211,12 +211,14 @@ fn never(text: &At<String>, subject: &Subject, is_script: bool) -> Result<Never,
     let refused = |(sentence, help): (String, String)| TestFileError::at(text.span(), sentence).help(help);
     if let Some((running, during)) = words.split_once(" while ") {
         let atoms = Some(atoms(running).map_err(refused)?);
-        return Ok(Never::While { words: words.to_owned(), atoms, condition: Some(condition(during)?) });
+        return Ok(ForbiddenState::While { words: words.to_owned(), atoms, condition: Some(condition(during)?) });
     }
     match atoms(words) {
-        Ok(atoms) => Ok(Never::While { words: words.to_owned(), atoms: Some(atoms), condition: None }),
+        Ok(atoms) => Ok(ForbiddenState::While { words: words.to_owned(), atoms: Some(atoms), condition: None }),
         Err(no_atom) => match condition(words) {
-            Ok(condition) => Ok(Never::While { words: words.to_owned(), atoms: None, condition: Some(condition) }),
+            Ok(condition) => {
+                Ok(ForbiddenState::While { words: words.to_owned(), atoms: None, condition: Some(condition) })
+            }
             Err(TestFileError { message, .. }) => {
                 let help = "expected an atom, a condition, `ATOM while CONDITION`, or `closer than DISTANCE`";
                 Err(TestFileError::at(text.span(), format!("{}; {message}", no_atom.0)).help(help))
@@ -225,7 +227,7 @@ fn never(text: &At<String>, subject: &Subject, is_script: bool) -> Result<Never,
     }
 }
 
-fn closer(text: &At<String>, distance: &str, is_script: bool) -> Result<Never, TestFileError> {
+fn closer(text: &At<String>, distance: &str, is_script: bool) -> Result<ForbiddenState, TestFileError> {
     let refused = |message: String| TestFileError::at(text.span(), message);
     if is_script {
         let error = refused("a script has no obstacles".to_owned());
@@ -234,7 +236,7 @@ fn closer(text: &At<String>, distance: &str, is_script: bool) -> Result<Never, T
     let compact: String = distance.split_whitespace().collect();
     let gap = Quantity::Length.read(&compact, "m").map_err(refused)?;
     if gap > 0.0 && gap <= FURTHEST {
-        return Ok(Never::Closer(gap));
+        return Ok(ForbiddenState::Closer(gap));
     }
     Err(refused(format!("`{distance}` has to be above 0 and at most {FURTHEST} m")))
 }

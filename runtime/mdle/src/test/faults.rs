@@ -17,11 +17,11 @@ const FURTHEST: f64 = 100.0;
 pub(super) struct TimedFault {
     from: Nanos,
     until: Nanos,
-    fault: Fault,
+    fault: SensorFault,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Fault {
+enum SensorFault {
     /// All bumper switches are in contact.
     Bumper,
     /// A sonar returns this range: the number of the sonar, and the range.
@@ -45,15 +45,15 @@ pub(super) fn read(text: &FaultText) -> Result<TimedFault, TestFileError> {
         TestFileError::at(name.span(), message).help(format!("as in `{key} = {example}`"))
     };
     let fault = match name.get_ref().as_str() {
-        "bumper" => Fault::Bumper,
-        "blocked" => Fault::Blocked,
-        "robot" => Fault::Robot,
+        "bumper" => SensorFault::Bumper,
+        "blocked" => SensorFault::Blocked,
+        "robot" => SensorFault::Robot,
         "battery" => {
             let percent = percent.as_ref().ok_or_else(|| needs("percent", "10"))?;
             if *percent.get_ref() > 100 {
                 return Err(TestFileError::at(percent.span(), "a charge is at most 100 percent"));
             }
-            Fault::Battery(f64::from(*percent.get_ref()) / 100.0)
+            SensorFault::Battery(f64::from(*percent.get_ref()) / 100.0)
         }
         "sonar" => {
             let sonar = sonar.as_ref().ok_or_else(|| needs("sonar", "0"))?;
@@ -61,7 +61,7 @@ pub(super) fn read(text: &FaultText) -> Result<TimedFault, TestFileError> {
             if number >= SONARS {
                 return Err(TestFileError::at(sonar.span(), format!("the sonars are 0 to {}", SONARS - 1)));
             }
-            Fault::Sonar(number, Meters(range_of(range.as_ref().ok_or_else(|| needs("range", "\"30cm\""))?)?))
+            SensorFault::Sonar(number, Meters(range_of(range.as_ref().ok_or_else(|| needs("range", "\"30cm\""))?)?))
         }
         other => {
             let near =
@@ -71,9 +71,9 @@ pub(super) fn read(text: &FaultText) -> Result<TimedFault, TestFileError> {
         }
     };
     let unused = [
-        sonar.as_ref().map(|at| (at.span(), "sonar", matches!(fault, Fault::Sonar(..)))),
-        range.as_ref().map(|at| (at.span(), "range", matches!(fault, Fault::Sonar(..)))),
-        percent.as_ref().map(|at| (at.span(), "percent", matches!(fault, Fault::Battery(_)))),
+        sonar.as_ref().map(|at| (at.span(), "sonar", matches!(fault, SensorFault::Sonar(..)))),
+        range.as_ref().map(|at| (at.span(), "range", matches!(fault, SensorFault::Sonar(..)))),
+        percent.as_ref().map(|at| (at.span(), "percent", matches!(fault, SensorFault::Battery(_)))),
     ];
     if let Some((place, key, _)) = unused.into_iter().flatten().find(|(.., is_used)| !is_used) {
         return Err(TestFileError::at(place, format!("the fault `{}` has no `{key}`", name.get_ref())));
@@ -96,7 +96,7 @@ fn range_of(text: &At<String>) -> Result<f64, TestFileError> {
 }
 
 /// Returns the faults that are active at a time.
-fn lasting(faults: &[TimedFault], t: Nanos) -> impl Iterator<Item = &Fault> {
+fn lasting(faults: &[TimedFault], t: Nanos) -> impl Iterator<Item = &SensorFault> {
     faults.iter().filter(move |fault| fault.from <= t && t < fault.until).map(|fault| &fault.fault)
 }
 
@@ -108,10 +108,10 @@ pub(super) fn before(faults: &[TimedFault], robot: &mut Observed, input: Twist, 
     let mut input = input;
     for fault in lasting(faults, t) {
         match fault {
-            Fault::Robot => return Err("the robot does not answer, as the test asks".to_owned()),
-            Fault::Blocked => input = Twist::default(),
-            Fault::Battery(charge) => robot.set_charge(*charge),
-            Fault::Bumper | Fault::Sonar(..) => {}
+            SensorFault::Robot => return Err("the robot does not answer, as the test asks".to_owned()),
+            SensorFault::Blocked => input = Twist::default(),
+            SensorFault::Battery(charge) => robot.set_charge(*charge),
+            SensorFault::Bumper | SensorFault::Sonar(..) => {}
         }
     }
     Ok(input)
@@ -121,13 +121,13 @@ pub(super) fn before(faults: &[TimedFault], robot: &mut Observed, input: Twist, 
 pub(super) fn after(faults: &[TimedFault], y: &mut Sensed, t: Nanos) {
     for fault in lasting(faults, t) {
         match fault {
-            Fault::Bumper => y.switches = u32::MAX,
-            Fault::Sonar(number, range) => {
+            SensorFault::Bumper => y.switches = u32::MAX,
+            SensorFault::Sonar(number, range) => {
                 if let Some(pings) = y.pings.get_mut(*number) {
                     *pings = reading(pings, *range);
                 }
             }
-            Fault::Battery(_) | Fault::Blocked | Fault::Robot => {}
+            SensorFault::Battery(_) | SensorFault::Blocked | SensorFault::Robot => {}
         }
     }
 }
@@ -159,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_fault_lasts_from_its_begin_up_to_its_end() {
-        let fault = TimedFault { from: Nanos(2), until: Nanos(4), fault: Fault::Bumper };
+        let fault = TimedFault { from: Nanos(2), until: Nanos(4), fault: SensorFault::Bumper };
         let lasts = [1, 2, 3, 4].map(|t| lasting(std::slice::from_ref(&fault), Nanos(t)).count());
         assert_eq!(lasts, [0, 1, 1, 0]);
     }

@@ -4,16 +4,16 @@ use mdle_compiler::fsm::Machine;
 use mdle_runtime::trace::Seconds;
 use mdle_runtime::{Nanos, Pose, Words};
 
-use super::causes::Cause;
-use super::course::{Course, CourseTransition, Ending, atom_words};
-use super::expected::{AtomsNamed, Expected, ExpectedEnd, ExpectedTransition, Never, TextRange};
+use super::causes::NamedCause;
+use super::course::{CourseTransition, TestCourse, TestEnd, atom_words};
+use super::expected::{AtomsNamed, ByteRange, Expected, ExpectedEnd, ExpectedTransition, ForbiddenState};
 use super::subject::Subject;
 
 /// An expectation that a run has not met.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Failure {
+pub(super) struct UnmetExpectation {
     /// Place of the expectation in the test file.
-    pub(super) place: TextRange,
+    pub(super) place: ByteRange,
     /// Message about the run.
     pub(super) message: String,
     /// Text shown at the place of the expectation.
@@ -27,7 +27,7 @@ pub(super) struct Failure {
 }
 
 /// Returns the expectations that a run has not met.
-pub(super) fn judge(expected: &Expected, course: &Course, subject: &Subject) -> Vec<Failure> {
+pub(super) fn judge(expected: &Expected, course: &TestCourse, subject: &Subject) -> Vec<UnmetExpectation> {
     let judge = Judge { course, machine: subject.machine(), words: &subject.words };
     let mut failures = Vec::new();
     failures.extend(judge.fault(expected));
@@ -42,29 +42,29 @@ pub(super) fn judge(expected: &Expected, course: &Course, subject: &Subject) -> 
 }
 
 struct Judge<'j> {
-    course: &'j Course,
+    course: &'j TestCourse,
     machine: &'j Machine,
     words: &'j dyn Words,
 }
 
 impl Judge<'_> {
-    fn failure(&self, place: &TextRange, message: String, expected: String, got: String) -> Failure {
-        Failure { place: place.clone(), message, expected, got, atom: self.last_atom(), t: self.course.t }
+    fn failure(&self, place: &ByteRange, message: String, expected: String, got: String) -> UnmetExpectation {
+        UnmetExpectation { place: place.clone(), message, expected, got, atom: self.last_atom(), t: self.course.t }
     }
 
     /// Returns the number of the last atom of the run, with a text about its end; `None` if no atom began.
     fn last_atom(&self) -> Option<(u32, String)> {
         let last = self.course.began.last()?;
         let words = match self.course.ending {
-            Ending::Over => "the plan ended in this atom",
-            Ending::Running | Ending::Failed(_) => "the run ended in this atom",
+            TestEnd::Over => "the plan ended in this atom",
+            TestEnd::Running | TestEnd::Failed(_) => "the run ended in this atom",
         };
         Some((last.atom, format!("{words}, which began at {} s", Seconds(last.t))))
     }
 
     /// Returns the failure for a fault that ended the run, unless the test expects the fault.
-    fn fault(&self, expected: &Expected) -> Option<Failure> {
-        let Ending::Failed(fault) = &self.course.ending else { return None };
+    fn fault(&self, expected: &Expected) -> Option<UnmetExpectation> {
+        let TestEnd::Failed(fault) = &self.course.ending else { return None };
         let place = match &expected.end {
             Some((_, ExpectedEnd::Failed)) => return None,
             Some((place, ExpectedEnd::By(..) | ExpectedEnd::Running)) => place.clone(),
@@ -74,7 +74,7 @@ impl Judge<'_> {
         Some(self.failure(&place, format!("a fault ended the run: {fault}"), words, fault.clone()))
     }
 
-    fn atoms(&self, place: &TextRange, atoms: &[AtomsNamed]) -> Option<Failure> {
+    fn atoms(&self, place: &ByteRange, atoms: &[AtomsNamed]) -> Option<UnmetExpectation> {
         let began = &self.course.began;
         let differs =
             (0..atoms.len().max(began.len())).find(|number| match (atoms.get(*number), began.get(*number)) {
@@ -99,13 +99,13 @@ impl Judge<'_> {
         Some(match got {
             Some(began) => {
                 let words = format!("this atom began at {} s", Seconds(began.t));
-                Failure { atom: Some((began.atom, words)), t: began.t, ..failure }
+                UnmetExpectation { atom: Some((began.atom, words)), t: began.t, ..failure }
             }
             None => failure,
         })
     }
 
-    fn order(&self, _: &TextRange, atoms: &[AtomsNamed]) -> Option<Failure> {
+    fn order(&self, _: &ByteRange, atoms: &[AtomsNamed]) -> Option<UnmetExpectation> {
         let mut began = self.course.began.iter();
         let mut last: Option<(&AtomsNamed, Nanos)> = None;
         for named in atoms {
@@ -136,7 +136,7 @@ impl Judge<'_> {
         if shown.is_empty() { "nothing began".to_owned() } else { format!("{} began", shown.join(", ")) }
     }
 
-    fn transition(&self, place: &TextRange, wanted: &ExpectedTransition) -> Option<Failure> {
+    fn transition(&self, place: &ByteRange, wanted: &ExpectedTransition) -> Option<UnmetExpectation> {
         let is_named = |named: &Option<AtomsNamed>, atom: Option<u32>| {
             named.as_ref().is_none_or(|named| atom.is_some_and(|atom| named.holds(atom)))
         };
@@ -166,7 +166,7 @@ impl Judge<'_> {
         let failure = self.failure(place, message.to_owned(), words, got);
         let Some(step) = step else { return Some(failure) };
         let atom = step.from.map(|atom| (atom, format!("left at {} s by {}", Seconds(step.t), step.words)));
-        Some(Failure { atom, t: step.t, ..failure })
+        Some(UnmetExpectation { atom, t: step.t, ..failure })
     }
 
     /// Returns the transition that meets the largest number of `conditions`, the first if there are several; `None` if
@@ -183,43 +183,43 @@ impl Judge<'_> {
         format!("the nearest was from {from} to {to} at {} s by {}", Seconds(step.t), step.words)
     }
 
-    fn is_by(&self, step: &CourseTransition, cause: &Cause) -> bool {
+    fn is_by(&self, step: &CourseTransition, cause: &NamedCause) -> bool {
         match cause {
-            Cause::Completed => step.has_completed,
-            Cause::Operands(operands) => operands
+            NamedCause::Completed => step.has_completed,
+            NamedCause::Operands(operands) => operands
                 .iter()
                 .any(|(scope, number)| !step.has_completed && step.scope == *scope && step.operands.contains(number)),
-            Cause::Scopes(scopes) => !step.has_completed && scopes.contains(&step.scope),
+            NamedCause::Scopes(scopes) => !step.has_completed && scopes.contains(&step.scope),
         }
     }
 
-    fn never(&self, expected: &Expected) -> Vec<Failure> {
+    fn never(&self, expected: &Expected) -> Vec<UnmetExpectation> {
         let failures = self.course.breaches.iter().filter_map(|breach| {
             let (place, never) = expected.never.get(breach.number)?;
             let at = format!("at {} s", Seconds(breach.t));
             let (message, got) = match never {
-                Never::Closer(least) => {
+                ForbiddenState::Closer(least) => {
                     let gap = centimetres(breach.gap.unwrap_or(0.0).max(0.0), *least);
                     ("the robot came too close to an obstacle".to_owned(), format!("{gap} cm {at}"))
                 }
-                Never::While { words, .. } => (format!("`{words}` was the case"), format!("it was {at}")),
+                ForbiddenState::While { words, .. } => (format!("`{words}` was the case"), format!("it was {at}")),
             };
             let atom = breach.atom.map(|atom| (atom, format!("this atom ran {at}")));
             let failure = self.failure(place, message, "never".to_owned(), got);
-            Some(Failure { atom, t: breach.t, ..failure })
+            Some(UnmetExpectation { atom, t: breach.t, ..failure })
         });
         failures.collect()
     }
 
-    fn end(&self, place: &TextRange, end: &ExpectedEnd) -> Option<Failure> {
+    fn end(&self, place: &ByteRange, end: &ExpectedEnd) -> Option<UnmetExpectation> {
         let last = self.course.last();
         let is_met = match end {
             ExpectedEnd::By(_, cause) => last.is_some_and(|step| self.is_by(step, cause)),
-            ExpectedEnd::Running => self.course.ending == Ending::Running,
-            ExpectedEnd::Failed => matches!(self.course.ending, Ending::Failed(_)),
+            ExpectedEnd::Running => self.course.ending == TestEnd::Running,
+            ExpectedEnd::Failed => matches!(self.course.ending, TestEnd::Failed(_)),
         };
         // A fault is reported as a separate failure.
-        if is_met || (matches!(self.course.ending, Ending::Failed(_)) && !matches!(end, ExpectedEnd::Failed)) {
+        if is_met || (matches!(self.course.ending, TestEnd::Failed(_)) && !matches!(end, ExpectedEnd::Failed)) {
             return None;
         }
         let expected = match end {
@@ -237,10 +237,10 @@ impl Judge<'_> {
         };
         let failure = self.failure(place, message.to_owned(), expected, got);
         let atom = last.and_then(|step| Some((step.from?, format!("the plan ended in this atom by {}", step.words))));
-        Some(Failure { atom: atom.or_else(|| failure.atom.clone()), ..failure })
+        Some(UnmetExpectation { atom: atom.or_else(|| failure.atom.clone()), ..failure })
     }
 
-    fn pose(&self, expected: &Expected) -> Option<Failure> {
+    fn pose(&self, expected: &Expected) -> Option<UnmetExpectation> {
         let ((place, _, goal), pose) = (expected.pose.as_ref()?, self.course.pose?);
         if goal.holds(&pose) {
             return None;
@@ -249,8 +249,8 @@ impl Judge<'_> {
         Some(self.failure(place, "the robot ended elsewhere".to_owned(), words, format!("at {}", pose_words(&pose))))
     }
 
-    fn most(&self, expected: &Expected) -> Vec<Failure> {
-        let Course { turns, steps, t, .. } = self.course;
+    fn most(&self, expected: &Expected) -> Vec<UnmetExpectation> {
+        let TestCourse { turns, steps, t, .. } = self.course;
         let transitions = steps.len() as u64;
         let counts =
             [(&expected.most_turns, *turns, "turns"), (&expected.most_transitions, transitions, "transitions")];

@@ -39,8 +39,8 @@ use mdle_engine::Library;
 use mdle_files::Input;
 use mdle_runtime::Sensed;
 use report::Tested;
-use runner::Made;
-use suite::Suite;
+use runner::CompletedRun;
+use suite::TestSuite;
 use watched::WatchedFiles;
 
 use crate::failure::{self, Failure};
@@ -94,7 +94,7 @@ fn once(arguments: &Test, library: &Library<Sensed>) -> Result<u8, Failure> {
 
 /// The test files of a call.
 struct Suites {
-    suites: Vec<Suite>,
+    suites: Vec<TestSuite>,
     /// The files of each plan, for reports.
     inputs: Vec<Input>,
 }
@@ -104,7 +104,7 @@ impl Suites {
     fn read(arguments: &Test) -> Result<(Self, u8), Failure> {
         let (mut suites, mut inputs, mut status) = (Vec::new(), Vec::new(), 0);
         for file in files(&arguments.files)? {
-            match Suite::read(&file, arguments.update) {
+            match TestSuite::read(&file, arguments.update) {
                 Ok((suite, input)) => {
                     suites.push(suite);
                     inputs.push(input);
@@ -118,7 +118,7 @@ impl Suites {
         Ok((Self { suites, inputs }, status))
     }
 
-    fn run(&self, arguments: &Test, library: &Library<Sensed>) -> (Vec<Made>, Vec<Coverage>) {
+    fn run(&self, arguments: &Test, library: &Library<Sensed>) -> (Vec<CompletedRun>, Vec<Coverage>) {
         let jobs = runner::jobs(&self.suites, arguments.only.as_deref(), arguments.seed, arguments.seeds);
         let threads = arguments.jobs.and_then(|jobs| usize::try_from(jobs).ok()).and_then(NonZeroUsize::new);
         let threads = threads.or_else(|| available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN);
@@ -159,7 +159,7 @@ impl Suites {
 }
 
 /// Checks that there is a test called `name`, if all files could be read.
-fn must_have(name: &str, suites: &[Suite], status: u8) -> Result<(), Failure> {
+fn must_have(name: &str, suites: &[TestSuite], status: u8) -> Result<(), Failure> {
     let names: Vec<_> = suites.iter().flat_map(|suite| &suite.cases).map(|case| case.name.as_str()).collect();
     if status > 0 || names.contains(&name) {
         return Ok(());

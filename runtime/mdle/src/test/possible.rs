@@ -7,8 +7,8 @@ use mdle_compiler::fsm::{Atom, Element, ElementKind, Exit, Machine};
 use mdle_compiler::plan::Condition;
 use mdle_runtime::trace::COMPLETED;
 
-use super::causes::Cause;
-use super::expected::{AtomsNamed, Expected, ExpectedTransition, TextRange};
+use super::causes::NamedCause;
+use super::expected::{AtomsNamed, ByteRange, Expected, ExpectedTransition};
 use super::file::TestFileError;
 use super::subject::Subject;
 
@@ -41,7 +41,7 @@ fn in_order(atoms: &[AtomsNamed], subject: &Subject) -> Result<(), TestFileError
 }
 
 /// Checks that the plan can make a transition.
-fn can_be_made(wanted: &ExpectedTransition, place: TextRange, subject: &Subject) -> Result<(), TestFileError> {
+fn can_be_made(wanted: &ExpectedTransition, place: ByteRange, subject: &Subject) -> Result<(), TestFileError> {
     let possible = PossibleTransitions::new(subject.machine());
     let is_from = |atom| wanted.from.as_ref().is_none_or(|from| from.holds(atom));
     let entered = possible.entered(is_from, wanted.by.as_ref().map(|(_, cause)| cause));
@@ -102,7 +102,7 @@ impl<'m> PossibleTransitions<'m> {
 
     /// Returns the atoms that can be entered by one transition with this cause from an atom for which `is_from`
     /// is true; `None` is the end of the plan.
-    fn entered(&self, is_from: impl Fn(u32) -> bool, cause: Option<&Cause>) -> BTreeSet<Option<u32>> {
+    fn entered(&self, is_from: impl Fn(u32) -> bool, cause: Option<&NamedCause>) -> BTreeSet<Option<u32>> {
         let mut entered = BTreeSet::new();
         for atom in self.machine.atoms().filter(|atom| is_from(atom.number())) {
             for element in ending(atom).filter(|element| cause.is_none_or(|cause| is_by(*element, cause))) {
@@ -175,12 +175,12 @@ fn has_interrupt(element: Element<'_>) -> bool {
     element.interrupt().is_some_and(|interrupt| !interrupt.removed && interrupt.condition != Condition::Null)
 }
 
-fn is_by(element: Element<'_>, cause: &Cause) -> bool {
+fn is_by(element: Element<'_>, cause: &NamedCause) -> bool {
     match cause {
-        Cause::Completed => element.completes(),
-        Cause::Operands(operands) => {
+        NamedCause::Completed => element.completes(),
+        NamedCause::Operands(operands) => {
             has_interrupt(element) && operands.iter().any(|(scope, _)| *scope == element.number())
         }
-        Cause::Scopes(scopes) => has_interrupt(element) && scopes.contains(&element.number()),
+        NamedCause::Scopes(scopes) => has_interrupt(element) && scopes.contains(&element.number()),
     }
 }

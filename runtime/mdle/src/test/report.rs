@@ -10,10 +10,10 @@ use mdle_host::quoted;
 use mdle_runtime::PrintableLines;
 use mdle_runtime::trace::Seconds;
 
-use super::course::{Course, CourseTransition, Ending, atom_words};
-use super::judge::Failure;
-use super::runner::{Job, Made, RunResult};
-use super::suite::{Case, RunsOn, Suite};
+use super::course::{CourseTransition, TestCourse, TestEnd, atom_words};
+use super::judge::UnmetExpectation;
+use super::runner::{CompletedRun, RunJob, RunResult};
+use super::suite::{RunsOn, TestCase, TestSuite};
 use crate::messages;
 
 /// Maximum number of transitions to show before a failure.
@@ -23,19 +23,19 @@ const SEEDS: usize = 10;
 
 /// The runs of one test.
 pub(super) struct Tested<'m> {
-    pub(super) suite: &'m Suite,
-    pub(super) case: &'m Case,
+    pub(super) suite: &'m TestSuite,
+    pub(super) case: &'m TestCase,
     /// The files of the plan and the test, for reports.
     pub(super) sources: &'m Sources,
     /// Runs in the order of their seeds; at least one.
-    pub(super) runs: &'m [Made],
+    pub(super) runs: &'m [CompletedRun],
 }
 
 /// Returns the tests with their runs, which are in the order of the tests.
-pub(super) fn tested<'m>(suites: &'m [Suite], inputs: &'m [Input], made: &'m [Made]) -> Vec<Tested<'m>> {
+pub(super) fn tested<'m>(suites: &'m [TestSuite], inputs: &'m [Input], made: &'m [CompletedRun]) -> Vec<Tested<'m>> {
     let groups = made.chunk_by(|one, next| (one.job.suite, one.job.case) == (next.job.suite, next.job.case));
     let tests = groups.filter_map(|runs| {
-        let Job { suite, case, .. } = runs.first()?.job;
+        let RunJob { suite, case, .. } = runs.first()?.job;
         let (suite, input) = (suites.get(suite)?, inputs.get(suite)?);
         Some(Tested { suite, case: suite.cases.get(case)?, sources: &input.sources, runs })
     });
@@ -44,7 +44,7 @@ pub(super) fn tested<'m>(suites: &'m [Suite], inputs: &'m [Input], made: &'m [Ma
 
 impl Tested<'_> {
     /// Returns the runs that have failed.
-    pub(super) fn failed(&self) -> impl Iterator<Item = &Made> {
+    pub(super) fn failed(&self) -> impl Iterator<Item = &CompletedRun> {
         self.runs.iter().filter(|run| !run.result.is_good())
     }
 
@@ -56,22 +56,22 @@ impl Tested<'_> {
     /// Returns the outcome in a few words: the turns and the end of a single run, or the number of failed runs.
     pub(super) fn outcome(&self) -> String {
         match (self.runs, self.failed().count()) {
-            ([Made { result: RunResult::Judged(course, _), .. }], _) => course_words(course),
-            ([Made { result: RunResult::Crashed(_), .. }], _) => "crashed".to_owned(),
+            ([CompletedRun { result: RunResult::Judged(course, _), .. }], _) => course_words(course),
+            ([CompletedRun { result: RunResult::Crashed(_), .. }], _) => "crashed".to_owned(),
             (runs, 0) => format!("{} seeds", runs.len()),
             (runs, failed) => format!("{failed} of {} seeds failed", runs.len()),
         }
     }
 
     /// Returns the command that repeats a run by itself.
-    pub(super) fn again(&self, job: Job) -> String {
+    pub(super) fn again(&self, job: RunJob) -> String {
         let (file, name) = (quoted(&self.suite.path.display().to_string()), quoted(&self.case.name));
         let seed = job.seed.map_or(String::new(), |seed| format!(" --seed {seed} --seeds 1"));
         format!("mdle test {file} --test {name}{seed}")
     }
 
     /// Returns the commands that record a run and explain a turn of it, if `mdle run` can repeat the run.
-    pub(super) fn why(&self, job: Job, failure: &Failure) -> Option<[String; 2]> {
+    pub(super) fn why(&self, job: RunJob, failure: &UnmetExpectation) -> Option<[String; 2]> {
         let RunsOn::Simulation(simulation) = &self.case.runs_on else { return None };
         if simulation.has_faults() {
             return None;
@@ -154,7 +154,7 @@ fn failed(test: &Tested<'_>) {
     let _ = write!(io::stderr().lock(), "{}", PrintableLines(&lines));
 }
 
-fn title(test: &Tested<'_>, job: Job) -> String {
+fn title(test: &Tested<'_>, job: RunJob) -> String {
     let seed = job.seed.map_or(String::new(), |seed| format!(", seed {seed}"));
     format!("{}{seed}", test.case.name)
 }
@@ -163,9 +163,9 @@ fn title(test: &Tested<'_>, job: Job) -> String {
 /// last transitions.
 fn report(
     test: &Tested<'_>,
-    job: Job,
-    course: &Course,
-    failure: &Failure,
+    job: RunJob,
+    course: &TestCourse,
+    failure: &UnmetExpectation,
     has_transitions: bool,
 ) -> Diagnostic<SourceId> {
     let machine = test.suite.subject.machine();
@@ -186,14 +186,14 @@ fn report(
 }
 
 /// Returns the commands that repeat a run, and that explain it at its first failure.
-fn commands(test: &Tested<'_>, job: Job, failures: &[Failure]) -> Vec<String> {
+fn commands(test: &Tested<'_>, job: RunJob, failures: &[UnmetExpectation]) -> Vec<String> {
     let first = failures.iter().min_by_key(|failure| failure.t);
     let why = first.and_then(|first| test.why(job, first)).map(|[record, why]| format!("why: {record}\n     {why}"));
     [format!("again: {}", test.again(job))].into_iter().chain(why).collect()
 }
 
 /// Returns the last transitions before a failure.
-fn transitions(test: &Tested<'_>, course: &Course, failure: &Failure) -> String {
+fn transitions(test: &Tested<'_>, course: &TestCourse, failure: &UnmetExpectation) -> String {
     let (machine, words) = (test.suite.subject.machine(), &test.suite.subject.words);
     let until = course.steps.partition_point(|step| step.t <= failure.t);
     let first = until.saturating_sub(STEPS);
@@ -205,11 +205,11 @@ fn transitions(test: &Tested<'_>, course: &Course, failure: &Failure) -> String 
 }
 
 /// Returns a short description of a run.
-fn course_words(course: &Course) -> String {
+fn course_words(course: &TestCourse) -> String {
     let turns = if course.turns == 1 { "1 turn".to_owned() } else { format!("{} turns", course.turns) };
     match &course.ending {
-        Ending::Over => format!("{turns}, over at {} s", Seconds(course.t)),
-        Ending::Running => format!("{turns}, running at {} s", Seconds(course.t)),
-        Ending::Failed(_) => format!("{turns}, a fault at {} s", Seconds(course.t)),
+        TestEnd::Over => format!("{turns}, over at {} s", Seconds(course.t)),
+        TestEnd::Running => format!("{turns}, running at {} s", Seconds(course.t)),
+        TestEnd::Failed(_) => format!("{turns}, a fault at {} s", Seconds(course.t)),
     }
 }

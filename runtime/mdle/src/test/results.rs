@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 use mdle_runtime::Words as _;
 use serde::Serialize;
 
-use super::course::{Course, Ending};
+use super::course::{TestCourse, TestEnd};
 use super::coverage_table::CoverageTable;
-use super::judge::Failure;
+use super::judge::UnmetExpectation;
 use super::report::Tested;
-use super::runner::{Made, RunResult};
+use super::runner::{CompletedRun, RunResult};
 
 /// The results of all tests.
 #[derive(Debug, Serialize)]
@@ -63,16 +63,16 @@ fn entries(tests: &[Tested<'_>]) -> Vec<RunEntry> {
     tests.iter().flat_map(|test| test.runs.iter().map(|run| entry(test, run))).collect()
 }
 
-fn entry(test: &Tested<'_>, run: &Made) -> RunEntry {
-    let (course, failures): (Option<&Course>, &[Failure]) = match &run.result {
+fn entry(test: &Tested<'_>, run: &CompletedRun) -> RunEntry {
+    let (course, failures): (Option<&TestCourse>, &[UnmetExpectation]) = match &run.result {
         RunResult::Judged(course, failures) => (Some(course), failures),
         RunResult::Crashed(_) => (None, &[]),
     };
     let (end, fault) = match (&run.result, course.map(|course| &course.ending)) {
         (RunResult::Crashed(reason), _) => ("crashed", Some(reason.clone())),
-        (RunResult::Judged(..), Some(Ending::Failed(fault))) => ("failed", Some(fault.clone())),
-        (RunResult::Judged(..), Some(Ending::Running) | None) => ("running", None),
-        (RunResult::Judged(..), Some(Ending::Over)) => ("over", None),
+        (RunResult::Judged(..), Some(TestEnd::Failed(fault))) => ("failed", Some(fault.clone())),
+        (RunResult::Judged(..), Some(TestEnd::Running) | None) => ("running", None),
+        (RunResult::Judged(..), Some(TestEnd::Over)) => ("over", None),
     };
     RunEntry {
         file: test.suite.path.display().to_string(),
@@ -88,7 +88,7 @@ fn entry(test: &Tested<'_>, run: &Made) -> RunEntry {
     }
 }
 
-fn failed(test: &Tested<'_>, failure: &Failure) -> FailureEntry {
+fn failed(test: &Tested<'_>, failure: &UnmetExpectation) -> FailureEntry {
     let subject = &test.suite.subject;
     let plan_line = failure.atom.as_ref().and_then(|(atom, _)| {
         let element = subject.machine().atom(*atom).element().number();

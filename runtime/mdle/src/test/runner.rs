@@ -13,16 +13,16 @@ use mdle_engine::Library;
 use mdle_host::ProgressLine;
 use mdle_runtime::Sensed;
 
-use super::course::Course;
+use super::course::TestCourse;
 use super::coverage::Coverage;
-use super::judge::{Failure, judge};
+use super::judge::{UnmetExpectation, judge};
 use super::scripted;
 use super::simulated::RunError;
-use super::suite::{Case, RunsOn, Suite};
+use super::suite::{RunsOn, TestCase, TestSuite};
 
 /// A run to make.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Job {
+pub(super) struct RunJob {
     pub(super) suite: usize,
     pub(super) case: usize,
     pub(super) seed: Option<u64>,
@@ -30,8 +30,8 @@ pub(super) struct Job {
 
 /// A run that was made.
 #[derive(Debug)]
-pub(super) struct Made {
-    pub(super) job: Job,
+pub(super) struct CompletedRun {
+    pub(super) job: RunJob,
     pub(super) result: RunResult,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct Made {
 #[derive(Debug)]
 pub(super) enum RunResult {
     /// The run has a course, and a list of the expectations that it has not met.
-    Judged(Box<Course>, Vec<Failure>),
+    Judged(Box<TestCourse>, Vec<UnmetExpectation>),
     /// The run could not begin, or its code panicked; contains the error message.
     Crashed(String),
 }
@@ -55,13 +55,13 @@ impl RunResult {
 }
 
 /// Returns the runs of all tests, or of the tests called `only`.
-pub(super) fn jobs(suites: &[Suite], only: Option<&str>, first: Option<u64>, count: Option<u64>) -> Vec<Job> {
+pub(super) fn jobs(suites: &[TestSuite], only: Option<&str>, first: Option<u64>, count: Option<u64>) -> Vec<RunJob> {
     let mut jobs = Vec::new();
     for (suite, tests) in suites.iter().enumerate() {
         for (case, test) in tests.cases.iter().enumerate().filter(|(_, test)| only.is_none_or(|only| test.name == only))
         {
             let (seed, runs) = test.seeds(first, count);
-            jobs.extend((0..runs).map(|run| Job { suite, case, seed: seed.map(|seed| seed.wrapping_add(run)) }));
+            jobs.extend((0..runs).map(|run| RunJob { suite, case, seed: seed.map(|seed| seed.wrapping_add(run)) }));
         }
     }
     jobs
@@ -69,11 +69,11 @@ pub(super) fn jobs(suites: &[Suite], only: Option<&str>, first: Option<u64>, cou
 
 /// Makes the runs on `threads` threads; returns them in the order of `jobs`, and the coverage of each suite.
 pub(super) fn run(
-    suites: &[Suite],
-    jobs: &[Job],
+    suites: &[TestSuite],
+    jobs: &[RunJob],
     threads: NonZeroUsize,
     library: &Library<Sensed>,
-) -> (Vec<Made>, Vec<Coverage>) {
+) -> (Vec<CompletedRun>, Vec<Coverage>) {
     let next = AtomicUsize::new(0);
     let fresh = || suites.iter().map(|suite| Coverage::new(suite.subject.machine())).collect::<Vec<_>>();
     let (mut made, mut coverage) = (Vec::new(), fresh());
@@ -88,7 +88,7 @@ pub(super) fn run(
                 while let Some((number, job)) = taken(next, jobs) {
                     let result = one(suites, *job, library, &mut coverage, refused);
                     // The runner listens until all threads have ended.
-                    let _ = sender.send((number, Made { job: *job, result }));
+                    let _ = sender.send((number, CompletedRun { job: *job, result }));
                 }
                 let _ = reached.send(coverage);
             });
@@ -111,7 +111,7 @@ pub(super) fn run(
     (made.into_iter().map(|(_, made)| made).collect(), coverage)
 }
 
-fn taken<'j>(next: &AtomicUsize, jobs: &'j [Job]) -> Option<(usize, &'j Job)> {
+fn taken<'j>(next: &AtomicUsize, jobs: &'j [RunJob]) -> Option<(usize, &'j RunJob)> {
     let number = next.fetch_add(1, Ordering::Relaxed);
     jobs.get(number).map(|job| (number, job))
 }
@@ -120,8 +120,8 @@ fn taken<'j>(next: &AtomicUsize, jobs: &'j [Job]) -> Option<(usize, &'j Job)> {
 /// refused. The other runs of the suite do not load this module again, because it may take long until a process is
 /// refused.
 fn one(
-    suites: &[Suite],
-    job: Job,
+    suites: &[TestSuite],
+    job: RunJob,
     library: &Library<Sensed>,
     coverage: &mut [Coverage],
     refused: &[OnceLock<String>],
@@ -156,7 +156,7 @@ fn one(
 }
 
 /// Makes a run; a panic in its code becomes an error.
-fn shielded(run: impl FnOnce() -> Result<Course, RunError>) -> Result<Course, RunError> {
+fn shielded(run: impl FnOnce() -> Result<TestCourse, RunError>) -> Result<TestCourse, RunError> {
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|payload| {
         let words = payload.downcast_ref::<&str>().map(|words| (*words).to_owned());
         let words = words.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
@@ -165,12 +165,12 @@ fn shielded(run: impl FnOnce() -> Result<Course, RunError>) -> Result<Course, Ru
 }
 
 fn course(
-    suite: &Suite,
-    case: &Case,
+    suite: &TestSuite,
+    case: &TestCase,
     seed: Option<u64>,
     library: &Library<Sensed>,
     coverage: &mut Coverage,
-) -> Result<Course, RunError> {
+) -> Result<TestCourse, RunError> {
     match &case.runs_on {
         RunsOn::Script(script) => Ok(scripted::run(&suite.subject, &case.expected, script, coverage)),
         RunsOn::Simulation(simulation) => simulation.run(&suite.subject, &case.expected, seed, library, coverage),

@@ -5,9 +5,9 @@ use mdle_compiler::trace::{CountedRun, Reports, Script};
 use mdle_host::{CauseText, Transitions};
 use mdle_runtime::Turn;
 
-use super::course::{Course, Ending, Recorder};
+use super::course::{CourseRecorder, TestCourse, TestEnd};
 use super::coverage::Coverage;
-use super::expected::{Expected, Never};
+use super::expected::{Expected, ForbiddenState};
 use super::file::{At, ScriptTurn, TestFileError};
 use super::subject::{Subject, TestCondition};
 
@@ -43,9 +43,9 @@ fn never_completes(law: &str, machine: &Machine) -> bool {
 }
 
 /// Runs the plan on a script.
-pub(super) fn run(subject: &Subject, expected: &Expected, script: &Script, coverage: &mut Coverage) -> Course {
+pub(super) fn run(subject: &Subject, expected: &Expected, script: &Script, coverage: &mut Coverage) -> TestCourse {
     let machine = subject.machine();
-    let mut recorder = Recorder::new(machine);
+    let mut recorder = CourseRecorder::new(machine);
     let mut counted = CountedRun::new(machine);
     let mut transitions = Transitions::default();
     for reports in script.turns() {
@@ -58,7 +58,7 @@ pub(super) fn run(subject: &Subject, expected: &Expected, script: &Script, cover
         coverage.turn(machine, atom, &transitions, |scope, tell| counted.operands(scope, reports, tell));
         breaches(expected, reports, atom, &mut recorder);
         if turn == Turn::Over {
-            recorder.course.ending = Ending::Over;
+            recorder.course.ending = TestEnd::Over;
             break;
         }
     }
@@ -66,9 +66,9 @@ pub(super) fn run(subject: &Subject, expected: &Expected, script: &Script, cover
 }
 
 /// Records the forbidden states that occur in a turn.
-fn breaches(expected: &Expected, reports: &Reports, atom: Option<u32>, recorder: &mut Recorder<'_>) {
+fn breaches(expected: &Expected, reports: &Reports, atom: Option<u32>, recorder: &mut CourseRecorder<'_>) {
     for (number, (_, never)) in expected.never.iter().enumerate() {
-        let Never::While { atoms, condition, .. } = never else { continue };
+        let ForbiddenState::While { atoms, condition, .. } = never else { continue };
         let is_known = recorder.course.breaches.iter().any(|breach| breach.number == number);
         let runs = atoms.as_ref().is_none_or(|atoms| atom.is_some_and(|atom| atoms.holds(atom)));
         let is_true = |TestCondition { machine, .. }: &TestCondition| fires(machine, reports);

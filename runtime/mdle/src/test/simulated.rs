@@ -15,9 +15,9 @@ use mdle_runtime::{Cause, Machine, Nanos, Plan as _, Robot as _, Sensed, Turn, T
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Observed, Sim};
 
-use super::course::{Course, Ending, Recorder};
+use super::course::{CourseRecorder, TestCourse, TestEnd};
 use super::coverage::Coverage;
-use super::expected::{Expected, Never};
+use super::expected::{Expected, ForbiddenState};
 use super::faults::{self, TimedFault};
 use super::file::{TestFileError, TestText};
 use super::subject::{Subject, TestCondition};
@@ -46,7 +46,7 @@ pub(super) enum RunError {
 }
 
 /// The conditions of a test during a run. Each runs as a plan that never leaves its only atom.
-type Watched = Vec<Option<Machine<LoadedPlan<SimAlphabet>>>>;
+type TestConditions = Vec<Option<Machine<LoadedPlan<SimAlphabet>>>>;
 
 impl Simulation {
     /// Reads the robot of a test in the file `path`.
@@ -100,7 +100,7 @@ impl Simulation {
         seed: Option<u64>,
         library: &Library<Sensed>,
         coverage: &mut Coverage,
-    ) -> Result<Course, RunError> {
+    ) -> Result<TestCourse, RunError> {
         let terms = RunTerms {
             time: Time::Stepped(Pace::Max),
             period: self.trials.period,
@@ -110,7 +110,7 @@ impl Simulation {
         let library = subject.modules(library).map_err(RunError::Module)?;
         let engine = Engine::new(self.loaded.plan(), &library, &terms);
         let engine = engine.map_err(|refusal| RunError::Module(refusal.to_string()))?;
-        let mut drive = Driven {
+        let mut drive = DrivenRobot {
             simulation: self,
             robot: self.trials.robot(seed).map_err(RunError::Own)?,
             engine,
@@ -118,7 +118,7 @@ impl Simulation {
             transitions: Transitions::default(),
             watched: Vec::new(),
         };
-        let mut recorder = Recorder::new(subject.machine());
+        let mut recorder = CourseRecorder::new(subject.machine());
         recorder.course.ending = drive.turns(subject, expected, &mut recorder, coverage);
         // After a fault, the state of the robot is unknown, so it is always stopped.
         let _ = drive.robot.stop();
@@ -128,24 +128,24 @@ impl Simulation {
 }
 
 /// A robot that is driven by the plan.
-struct Driven<'s> {
+struct DrivenRobot<'s> {
     simulation: &'s Simulation,
     robot: Observed,
     engine: Engine<SimAlphabet>,
     input: Twist,
     transitions: Transitions,
-    watched: Watched,
+    watched: TestConditions,
 }
 
-impl Driven<'_> {
+impl DrivenRobot<'_> {
     /// Makes turns until the end of the run.
     fn turns(
         &mut self,
         subject: &Subject,
         expected: &Expected,
-        recorder: &mut Recorder<'_>,
+        recorder: &mut CourseRecorder<'_>,
         coverage: &mut Coverage,
-    ) -> Ending {
+    ) -> TestEnd {
         let nanos = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
         let (period, timeout) = (nanos(self.simulation.trials.period), nanos(self.simulation.timeout));
         for number in 0.. {
@@ -154,22 +154,22 @@ impl Driven<'_> {
             recorder.course.t = t;
             let y = match self.exchange(t) {
                 Ok(y) => y,
-                Err(fault) => return Ending::Failed(fault),
+                Err(fault) => return TestEnd::Failed(fault),
             };
             let turn = match self.turn(y, t, number) {
                 Ok(turn) => turn,
-                Err(fault) => return Ending::Failed(fault),
+                Err(fault) => return TestEnd::Failed(fault),
             };
             self.follow(subject, (t, y), recorder, coverage);
             self.breaches(expected, (t, y), recorder);
             if turn == Turn::Over {
-                return self.exchange(t).map_or_else(Ending::Failed, |_| Ending::Over);
+                return self.exchange(t).map_or_else(TestEnd::Failed, |_| TestEnd::Over);
             }
             if t.0 >= timeout {
                 break;
             }
         }
-        Ending::Running
+        TestEnd::Running
     }
 
     fn exchange(&mut self, t: Nanos) -> Result<Sensed, String> {
@@ -196,7 +196,13 @@ impl Driven<'_> {
         })
     }
 
-    fn follow(&self, subject: &Subject, (t, y): (Nanos, Sensed), recorder: &mut Recorder<'_>, coverage: &mut Coverage) {
+    fn follow(
+        &self,
+        subject: &Subject,
+        (t, y): (Nanos, Sensed),
+        recorder: &mut CourseRecorder<'_>,
+        coverage: &mut Coverage,
+    ) {
         // A plan that reads modules waits for their first values.
         let Some(machine) = self.engine.machine() else { return recorder.waits(t) };
         let (plan, cursor) = (machine.plan(), machine.cursor());
@@ -209,7 +215,7 @@ impl Driven<'_> {
     }
 
     /// Records the forbidden states that occur in a turn.
-    fn breaches(&mut self, expected: &Expected, (t, y): (Nanos, Sensed), recorder: &mut Recorder<'_>) {
+    fn breaches(&mut self, expected: &Expected, (t, y): (Nanos, Sensed), recorder: &mut CourseRecorder<'_>) {
         if expected.never.is_empty() {
             return;
         }
@@ -222,13 +228,13 @@ impl Driven<'_> {
                 continue;
             }
             match never {
-                Never::Closer(least) => {
+                ForbiddenState::Closer(least) => {
                     let gap = self.robot.gap(*least);
                     if gap < *least {
                         recorder.breach(number, Some(gap));
                     }
                 }
-                Never::While { atoms, .. } => {
+                ForbiddenState::While { atoms, .. } => {
                     let runs = atoms.as_ref().is_none_or(|atoms| atom.is_some_and(|atom| atoms.holds(atom)));
                     let is_true = |machine: &Machine<LoadedPlan<SimAlphabet>>| {
                         let ending = machine.plan().next(machine.cursor(), &y, t);
@@ -245,8 +251,8 @@ impl Driven<'_> {
 }
 
 /// Starts the plan of an expectation's condition; returns `None` if the expectation has no condition.
-fn watched(never: &Never, y: &Sensed, t: Nanos) -> Option<Machine<LoadedPlan<SimAlphabet>>> {
-    let Never::While { condition: Some(condition), .. } = never else { return None };
+fn watched(never: &ForbiddenState, y: &Sensed, t: Nanos) -> Option<Machine<LoadedPlan<SimAlphabet>>> {
+    let ForbiddenState::While { condition: Some(condition), .. } = never else { return None };
     let TestCondition { loaded, .. } = &**condition;
     loaded.as_ref().map(|loaded| Machine::begin(loaded.plan(), y, t))
 }

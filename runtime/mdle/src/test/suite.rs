@@ -19,16 +19,16 @@ use crate::failure::{self, Failure};
 use crate::messages;
 
 /// A test file.
-pub(super) struct Suite {
+pub(super) struct TestSuite {
     pub(super) path: PathBuf,
     /// The text of the test file, among the files of the plan.
     pub(super) source: SourceId,
     pub(super) subject: Subject,
-    pub(super) cases: Vec<Case>,
+    pub(super) cases: Vec<TestCase>,
 }
 
 /// A test.
-pub(super) struct Case {
+pub(super) struct TestCase {
     pub(super) name: String,
     pub(super) text: TestText,
     pub(super) expected: Expected,
@@ -41,7 +41,7 @@ pub(super) enum RunsOn {
     Simulation(Box<Simulation>),
 }
 
-impl Suite {
+impl TestSuite {
     /// Reads a test file and compiles its plan; returns the tests, and the files of the plan together with the test
     /// file. Tests without expectations are accepted if `is_recorded` is `true`. Messages go to standard error.
     ///
@@ -54,7 +54,7 @@ impl Suite {
         let source = input.sources.add(path.display().to_string(), text.clone());
         let (mut cases, mut errors) = (Vec::new(), Vec::new());
         for test in tests.test {
-            match Case::read(test, path, &subject, is_recorded) {
+            match TestCase::read(test, path, &subject, is_recorded) {
                 Ok(case) => cases.push(case),
                 Err(error) => errors.push(error),
             }
@@ -67,7 +67,7 @@ impl Suite {
     }
 }
 
-impl Case {
+impl TestCase {
     fn read(text: TestText, path: &Path, subject: &Subject, is_recorded: bool) -> Result<Self, TestFileError> {
         let expected = Expected::read(&text.expect, subject, text.script.is_some())?;
         possible(&expected, subject)?;

@@ -7,24 +7,24 @@ use std::path::Path;
 
 use mdle_compiler::fsm::Machine;
 
-use super::course::{Course, Ending};
+use super::course::{TestCourse, TestEnd};
 use super::file;
 use super::judge::{judge, pose_words};
 use super::report::Tested;
 use super::runner::RunResult;
 use super::subject::Subject;
-use super::suite::{Case, RunsOn};
+use super::suite::{RunsOn, TestCase};
 
 /// Radius and angle tolerance with which a pose is recorded for the first time.
 const POSE: [&str; 2] = ["10cm", "5"];
 
 /// A replacement of a range of a text.
-type Edit = (Range<usize>, String);
+type TextReplacement = (Range<usize>, String);
 
 /// Updates a test file: replaces the expectations of atoms, of the end, of the pose and of numbers by the results of
 /// the first run of each test. Returns the new text; `None` if nothing changes.
 pub(super) fn updated(text: &str, tests: &[Tested<'_>]) -> Option<String> {
-    let mut edits: Vec<Edit> = tests.iter().flat_map(|test| edits(text, test)).collect();
+    let mut edits: Vec<TextReplacement> = tests.iter().flat_map(|test| edits(text, test)).collect();
     if edits.is_empty() {
         return None;
     }
@@ -53,7 +53,7 @@ pub(super) fn write(path: &Path, text: &str) -> Result<(), String> {
 }
 
 /// Returns the changes of a test.
-fn edits(text: &str, test: &Tested<'_>) -> Vec<Edit> {
+fn edits(text: &str, test: &Tested<'_>) -> Vec<TextReplacement> {
     let Some(RunResult::Judged(course, _)) = test.runs.first().map(|run| &run.result) else { return Vec::new() };
     let (case, subject) = (test.case, &test.suite.subject);
     if case.text.expect.is_empty() {
@@ -97,7 +97,7 @@ fn edits(text: &str, test: &Tested<'_>) -> Vec<Edit> {
 }
 
 /// Returns the expectations for a test that has none yet.
-fn recorded(case: &Case, subject: &Subject, course: &Course) -> String {
+fn recorded(case: &TestCase, subject: &Subject, course: &TestCourse) -> String {
     let mut lines = format!("expect.atoms = {}\n", atoms_text(subject.machine(), course));
     if let Some(end) = end_text(subject, course) {
         lines += &format!("expect.end = {}\n", quoted(&end));
@@ -112,7 +112,7 @@ fn recorded(case: &Case, subject: &Subject, course: &Course) -> String {
     lines
 }
 
-fn atoms_text(machine: &Machine, course: &Course) -> String {
+fn atoms_text(machine: &Machine, course: &TestCourse) -> String {
     let laws = course.began.iter().map(|began| quoted(&machine.atom(began.atom).law().text));
     let laws: Vec<_> = laws.collect();
     let line = format!("[{}]", laws.join(", "));
@@ -120,18 +120,18 @@ fn atoms_text(machine: &Machine, course: &Course) -> String {
 }
 
 /// Returns the end of a run in the syntax of test files; `None` if it cannot be expressed.
-fn end_text(subject: &Subject, course: &Course) -> Option<String> {
+fn end_text(subject: &Subject, course: &TestCourse) -> Option<String> {
     use mdle_runtime::Words as _;
 
     match (&course.ending, course.last()) {
-        (Ending::Running, _) => Some("running".to_owned()),
-        (Ending::Failed(_), _) => Some("failed".to_owned()),
-        (Ending::Over, Some(step)) if step.has_completed => Some(mdle_runtime::trace::COMPLETED.to_owned()),
-        (Ending::Over, Some(step)) => {
+        (TestEnd::Running, _) => Some("running".to_owned()),
+        (TestEnd::Failed(_), _) => Some("failed".to_owned()),
+        (TestEnd::Over, Some(step)) if step.has_completed => Some(mdle_runtime::trace::COMPLETED.to_owned()),
+        (TestEnd::Over, Some(step)) => {
             let operand = subject.words.operand(step.scope, *step.operands.first()?)?;
             Some(operand.written.to_owned())
         }
-        (Ending::Over, None) => None,
+        (TestEnd::Over, None) => None,
     }
 }
 

@@ -7,8 +7,8 @@ use mdle_host::{CauseText, Operand, Passes, Texts, place};
 use mdle_record::Applied;
 use mdle_runtime::{Cause, Nanos, SONARS, Sensed, Transition, Twist};
 
-use super::operands::Facts;
-use super::scopes::{Scope, scopes};
+use super::operands::OperandFacts;
+use super::scopes::{ScopeState, scopes};
 use crate::examined::{ExaminedPlan, ExaminedTurn, PlanMoment};
 
 /// An atom in a report.
@@ -32,7 +32,7 @@ pub(crate) struct Ended {
     /// `true` if the law of the atom had completed as well, although an interrupt ended its scope.
     pub(crate) was_done: bool,
     /// The scopes that enclose the atom, the plan first.
-    pub(crate) scopes: Vec<Scope>,
+    pub(crate) scopes: Vec<ScopeState>,
     /// The atom that was entered; `None` if the plan is over.
     pub(crate) to: Option<AtomWords>,
 }
@@ -51,7 +51,7 @@ pub(crate) struct AppliedAtom {
     /// `true` if the atom's law can complete.
     pub(crate) completes: bool,
     /// The scopes that enclose the atom, the plan first.
-    pub(crate) scopes: Vec<Scope>,
+    pub(crate) scopes: Vec<ScopeState>,
 }
 
 /// The atom that ran when another plan replaced its plan.
@@ -99,7 +99,7 @@ pub(crate) struct ExplainedTransition {
 #[derive(Debug, Default)]
 pub(crate) struct Explainer {
     /// The plans that have been active, by their numbers; a plan that was suspended continues where it was.
-    courses: BTreeMap<u64, Course>,
+    courses: BTreeMap<u64, PlanCourse>,
     /// Number of the active plan; `None` before the first turn.
     number: Option<u64>,
     /// Number of the plan that was replaced in the last turn; `None` if no plan was replaced.
@@ -108,7 +108,7 @@ pub(crate) struct Explainer {
 
 /// The course of a plan so far.
 #[derive(Debug, Default)]
-struct Course {
+struct PlanCourse {
     /// The current passes of the plan's loops.
     passes: Passes,
     /// Cause of the transition to the current atom, or reason why the plan replaced another plan.
@@ -182,7 +182,7 @@ impl Explainer {
     }
 
     /// Returns the course of the active plan.
-    fn course(&mut self) -> &mut Course {
+    fn course(&mut self) -> &mut PlanCourse {
         self.courses.entry(self.number.unwrap_or_default()).or_default()
     }
 
@@ -221,8 +221,8 @@ impl Explainer {
     }
 
     /// Returns the facts that operands read at a moment of a turn.
-    pub(crate) fn facts(turn: &ExaminedTurn, moment: &PlanMoment) -> Facts {
-        Facts { ages: ages(&turn.recorded.y), stalled: moment.stalled, is_new: moment.is_new() }
+    pub(crate) fn facts(turn: &ExaminedTurn, moment: &PlanMoment) -> OperandFacts {
+        OperandFacts { ages: ages(&turn.recorded.y), stalled: moment.stalled, is_new: moment.is_new() }
     }
 
     /// Returns the causes of the transitions of a turn, and the atoms to which they led.

@@ -4,14 +4,14 @@ use mdle_runtime::{Measured, Nanos, Twist};
 use serde_json::{Value, json};
 
 use super::explanation::{AppliedAtom, AtomWords, Ended, Explanation, Replaced};
-use super::never::{Beginnings, Chance, Never, Skips, Stay, Turned};
+use super::never::{Beginnings, Chance, NeverAnswer, Skips, Stay, Turned};
 use super::operands::MeasuredOperand;
-use super::scopes::{Scope, ScopeRole};
-use super::{Answer, Next};
+use super::scopes::{ScopeRole, ScopeState};
+use super::{NextEvents, TurnAnswer};
 
 /// Returns an answer as a JSON object.
-pub(super) fn object(answer: &Answer) -> Value {
-    let Answer { explanation, asked, next, safety } = answer;
+pub(super) fn object(answer: &TurnAnswer) -> Value {
+    let TurnAnswer { explanation, asked, next, safety } = answer;
     let Explanation { turn, t, replaced, ended, runs, cut, output_age, sent, computed } = explanation;
     json!({
         "asked": asked.seconds(),
@@ -59,8 +59,8 @@ fn words(atom: &AtomWords) -> Value {
     json!({ "law": atom.law, "place": atom.place })
 }
 
-fn scope(scope: &Scope) -> Value {
-    let Scope { name, is_atom, line, condition, since, part, examination, leads_to } = scope;
+fn scope(scope: &ScopeState) -> Value {
+    let ScopeState { name, is_atom, line, condition, since, part, examination, leads_to } = scope;
     let part = match part {
         ScopeRole::Ended => "ended",
         ScopeRole::Completed => "completed",
@@ -112,8 +112,8 @@ fn input(input: Twist) -> Value {
 }
 
 /// Returns, as a JSON object, the answer to the question why an atom or a scope did not begin.
-pub(super) fn absence(never: &Never) -> Value {
-    let Never { asked, began, runs, skipped, chance, follows, end, last, .. } = never;
+pub(super) fn absence(never: &NeverAnswer) -> Value {
+    let NeverAnswer { asked, began, runs, skipped, chance, follows, end, last, .. } = never;
     let turned = |(turn, t): &Turned| json!({ "turn": turn, "t": t.seconds() });
     let caused = |((turn, t), cause): &(Turned, String)| json!({ "turn": turn, "t": t.seconds(), "cause": cause });
     json!({
@@ -144,13 +144,13 @@ fn stay(stay: &Stay) -> Value {
     })
 }
 
-fn following(next: &Next) -> Value {
+fn following(next: &NextEvents) -> Value {
     match next {
-        Next::Turn { turn, t, steps } => {
+        NextEvents::Turn { turn, t, steps } => {
             let step =
                 |(cause, to): &(String, Option<AtomWords>)| json!({ "cause": cause, "to": to.as_ref().map(words) });
             json!({ "turn": turn, "t": t.seconds(), "steps": steps.iter().map(step).collect::<Vec<_>>() })
         }
-        Next::End { .. } => Value::Null,
+        NextEvents::End { .. } => Value::Null,
     }
 }

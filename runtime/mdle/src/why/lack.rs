@@ -6,7 +6,7 @@ use mdle_runtime::{Examined, Measured, Nanometers, Nanos, Operator, Radians};
 
 /// The facts of a turn that are needed to describe an operand.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Values<'v> {
+pub(crate) struct TurnFacts<'v> {
     /// Time since the scope was entered.
     pub(crate) since: Nanos,
     /// Length of the path driven since the scope was entered.
@@ -28,9 +28,9 @@ pub(crate) fn lack(
     condition: &Condition,
     part: Examined,
     inner: Option<(&Condition, Examined)>,
-    values: &Values<'_>,
+    values: &TurnFacts<'_>,
 ) -> String {
-    let Values { since, way, stalled, is_new, .. } = *values;
+    let TurnFacts { since, way, stalled, is_new, .. } = *values;
     if condition.lasting().is_some_and(|(_, due)| due == MEETING) {
         return meeting(part, since);
     }
@@ -98,8 +98,8 @@ fn meeting(part: Examined, since: Nanos) -> String {
 }
 
 /// Returns, in words, the time or the margin for which an operand that has fired still holds; empty if it is not known.
-pub(crate) fn held(condition: &Condition, part: Examined, values: &Values<'_>) -> String {
-    let Values { since, way, .. } = *values;
+pub(crate) fn held(condition: &Condition, part: Examined, values: &TurnFacts<'_>) -> String {
+    let TurnFacts { since, way, .. } = *values;
     match condition {
         Condition::Wait { .. } => format!("{} s passed", rounded(since.0)),
         Condition::Elapsed { until, .. } => match until {
@@ -121,7 +121,7 @@ pub(crate) fn held(condition: &Condition, part: Examined, values: &Values<'_>) -
 }
 
 /// Describes the difference by which a comparison does not hold.
-fn compared(measured: Measured, values: &Values<'_>) -> String {
+fn compared(measured: Measured, values: &TurnFacts<'_>) -> String {
     let Measured::Compared { left, right, .. } = measured else { return "it has not fired".to_owned() };
     let Some((unit, scale)) = values.unit else { return String::new() };
     if left.is_nan() || right.is_nan() {
@@ -138,7 +138,7 @@ fn compared(measured: Measured, values: &Values<'_>) -> String {
 }
 
 /// Describes the difference by which a comparison holds; empty if the operand is not a comparison.
-fn margin(measured: Measured, values: &Values<'_>) -> String {
+fn margin(measured: Measured, values: &TurnFacts<'_>) -> String {
     let (Measured::Compared { left, right, .. }, Some((unit, scale))) = (measured, values.unit) else {
         return String::new();
     };

@@ -20,25 +20,25 @@ use mdle_runtime::{Nanos, PrintableLines};
 use explanation::{AtomWords, Explainer, Explanation};
 
 use crate::arguments::{Question, Why};
-use crate::examined::{ExaminedRun, ExaminedTurn, Stop};
+use crate::examined::{ExaminedRun, ExaminedStop, ExaminedTurn};
 use crate::failure::{self, Failure};
 use crate::replay::{self, WantedPlan};
 use crate::run_time::run_time;
 
 /// The answer about a turn.
 #[derive(Debug)]
-struct Answer {
+struct TurnAnswer {
     explanation: Explanation,
     /// The time in the question.
     asked: Nanos,
-    next: Next,
+    next: NextEvents,
     /// The safety rule that changed the input, and its effect; `None` if no rule changed it.
     safety: Option<String>,
 }
 
 /// The events after a turn.
 #[derive(Debug)]
-enum Next {
+enum NextEvents {
     /// The next turn with transitions: their causes, and the atoms to which they led.
     Turn { turn: u64, t: Nanos, steps: Vec<(String, Option<AtomWords>)> },
     /// No transition until the end of the record; the time and the reason of the end.
@@ -60,7 +60,7 @@ pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
     let wanted = WantedPlan { log, file, begin: &begin, call: &call, has_run: true };
     let mut run = ExaminedRun::of(&wanted, record)?;
     let with_laws = !begin.beside.is_empty();
-    let asked = Asked { name: &name, begin: &begin, with_laws };
+    let asked = RecordQuery { name: &name, begin: &begin, with_laws };
     let answer = match &arguments.question {
         Question::At(time) => {
             let answer = at(&asked, time, &mut run)?;
@@ -85,14 +85,14 @@ pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
 }
 
 /// A record, with the question about it.
-struct Asked<'a> {
+struct RecordQuery<'a> {
     name: &'a str,
     begin: &'a Begin,
     with_laws: bool,
 }
 
 /// Explains the turn at a time.
-fn at(asked: &Asked<'_>, time: &str, run: &mut ExaminedRun) -> Result<Result<Answer, Stop>, Failure> {
+fn at(asked: &RecordQuery<'_>, time: &str, run: &mut ExaminedRun) -> Result<Result<TurnAnswer, ExaminedStop>, Failure> {
     let time = run_time(time)?;
     let mut explainer = Explainer::default();
     let mut last = None;
@@ -127,17 +127,17 @@ fn at(asked: &Asked<'_>, time: &str, run: &mut ExaminedRun) -> Result<Result<Ans
     {
         return Ok(Err(stop));
     }
-    Ok(Ok(Answer { explanation, asked: time, next, safety }))
+    Ok(Ok(TurnAnswer { explanation, asked: time, next, safety }))
 }
 
 /// Replays the turns up to the end of the record. Returns the reason if a turn does not match the record, or if a plan
 /// of the record cannot be compiled.
-fn differing(run: &mut ExaminedRun) -> Option<Stop> {
+fn differing(run: &mut ExaminedRun) -> Option<ExaminedStop> {
     loop {
         match run.turn()? {
             Ok(_) => {}
-            Err(stop @ (Stop::Differs(..) | Stop::Failed(_))) => return Some(stop),
-            Err(Stop::Unread(_)) => return None,
+            Err(stop @ (ExaminedStop::Differs(..) | ExaminedStop::Failed(_))) => return Some(stop),
+            Err(ExaminedStop::Unread(_)) => return None,
         }
     }
 }
@@ -146,7 +146,7 @@ fn differing(run: &mut ExaminedRun) -> Option<Stop> {
 ///
 /// # Errors
 /// Fails if the plan is not that of the record.
-fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -> Result<Next, Stop> {
+fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -> Result<NextEvents, ExaminedStop> {
     let (mut t, mut end) = (found.recorded.t, found.end);
     let mut had_plan = run.plan().is_some();
     loop {
@@ -166,22 +166,22 @@ fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -
                     steps.push((if began.is_empty() { "the start of the plan".to_owned() } else { began }, first));
                 }
                 steps.extend(explainer.steps(&turn, &*plan.texts));
-                return Ok(Next::Turn { turn: turn.recorded.number, t: turn.recorded.t, steps });
+                return Ok(NextEvents::Turn { turn: turn.recorded.number, t: turn.recorded.t, steps });
             }
-            Some(Err(stop @ (Stop::Differs(..) | Stop::Failed(_)))) => return Err(stop),
-            Some(Err(stop @ Stop::Unread(_))) => {
-                return Ok(Next::End { t, why: format!(": {}", stop.sentence()) });
+            Some(Err(stop @ (ExaminedStop::Differs(..) | ExaminedStop::Failed(_)))) => return Err(stop),
+            Some(Err(stop @ ExaminedStop::Unread(_))) => {
+                return Ok(NextEvents::End { t, why: format!(": {}", stop.sentence()) });
             }
             None => {
                 let why = end.map_or_else(String::new, |why| format!(": {why}"));
-                return Ok(Next::End { t, why });
+                return Ok(NextEvents::End { t, why });
             }
         }
     }
 }
 
 /// Returns the message about a time after the end of the record.
-fn outside(asked: &Asked<'_>, time: Nanos, last: Option<(u64, Nanos)>, is_whole: bool) -> Failure {
+fn outside(asked: &RecordQuery<'_>, time: Nanos, last: Option<(u64, Nanos)>, is_whole: bool) -> Failure {
     let (name, time) = (asked.name, Clocked(time));
     let Some((turn, t)) = last else { return Failure::Usage(format!("the record {name} has no turns")) };
     let end = if is_whole { "ends" } else { "was cut short, and ends" };

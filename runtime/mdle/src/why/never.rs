@@ -10,17 +10,17 @@ use mdle_host::Texts;
 use mdle_runtime::Nanos;
 
 use super::explanation::{AtomWords, Explainer};
-use super::operands::Facts;
-use super::scopes::{Scope, scopes};
+use super::operands::OperandFacts;
+use super::scopes::{ScopeState, scopes};
 use crate::elements_named::elements_named;
-use crate::examined::{ExaminedPlan, ExaminedRun, ExaminedTurn, PlanMoment, Stop};
+use crate::examined::{ExaminedPlan, ExaminedRun, ExaminedStop, ExaminedTurn, PlanMoment};
 
 /// A turn: its number and its time.
 pub(crate) type Turned = (u64, Nanos);
 
 /// The answer to the question why an atom or a scope did not begin.
 #[derive(Debug)]
-pub(crate) struct Never {
+pub(crate) struct NeverAnswer {
     /// The atom or the scope as named in the question.
     pub(crate) asked: String,
     /// The turns in which the element began; `None` if it never did.
@@ -66,7 +66,7 @@ pub(crate) struct Skips {
 pub(crate) struct Stay {
     pub(crate) turned: Turned,
     pub(crate) atom: AtomWords,
-    pub(crate) scopes: Vec<Scope>,
+    pub(crate) scopes: Vec<ScopeState>,
     /// Cause of the transition; empty if there was none.
     pub(crate) cause: String,
 }
@@ -104,7 +104,7 @@ struct Door {
 #[derive(Clone, Copy)]
 struct FactsOfTurn {
     turned: Turned,
-    facts: Facts,
+    facts: OperandFacts,
 }
 
 /// Answers the question why the atom or the scope that `text` names did not begin, for the last plan of the record that
@@ -112,8 +112,12 @@ struct FactsOfTurn {
 ///
 /// # Errors
 /// Fails with a message if no plan of the record contains such an atom or scope.
-pub(crate) fn never(target: &Target, text: &str, run: &mut ExaminedRun) -> Result<Result<Never, Stop>, String> {
-    let mut searches: BTreeMap<u64, Option<Search>> = BTreeMap::new();
+pub(crate) fn never(
+    target: &Target,
+    text: &str,
+    run: &mut ExaminedRun,
+) -> Result<Result<NeverAnswer, ExaminedStop>, String> {
+    let mut searches: BTreeMap<u64, Option<PlanSearch>> = BTreeMap::new();
     let (mut explainer, mut unknown, mut number) = (Explainer::default(), Vec::new(), 0);
     while let Some(turn) = run.turn() {
         let turn = match turn {
@@ -126,7 +130,7 @@ pub(crate) fn never(target: &Target, text: &str, run: &mut ExaminedRun) -> Resul
         let search = searches.entry(number).or_insert_with(|| {
             let wanted = wanted(&plan.machine, target, text, &*plan.texts);
             let wanted = wanted.map_err(|why| unknown.push((plan.texts.name(0).to_owned(), why)));
-            wanted.ok().map(|wanted| Search::new(Rc::clone(plan), wanted, text))
+            wanted.ok().map(|wanted| PlanSearch::new(Rc::clone(plan), wanted, text))
         });
         match search {
             Some(search) => search.turn(&turn, &mut explainer),
@@ -141,7 +145,7 @@ pub(crate) fn never(target: &Target, text: &str, run: &mut ExaminedRun) -> Resul
     let plan = if has_several { search.plan.texts.name(0).to_owned() } else { String::new() };
     explainer.resume(own);
     let answer = search.answer(&mut explainer);
-    Ok(Ok(Never { plan, is_replaced: own != number, ..answer }))
+    Ok(Ok(NeverAnswer { plan, is_replaced: own != number, ..answer }))
 }
 
 /// Returns the message that no plan of the record has such an atom, from the message and the help text for each plan.
@@ -156,7 +160,7 @@ fn no_atom(text: &str, plans: Vec<(String, (String, String))>) -> String {
     }
 }
 
-impl Never {
+impl NeverAnswer {
     /// Returns the answer before the first turn.
     fn of(text: &str) -> Self {
         Self {
@@ -193,7 +197,7 @@ fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> R
 }
 
 /// The search in one of the plans of a record.
-struct Search {
+struct PlanSearch {
     plan: Rc<ExaminedPlan>,
     /// Numbers of the elements in question.
     wanted: Vec<u32>,
@@ -203,13 +207,13 @@ struct Search {
     skips: BTreeMap<u32, Nanos>,
     /// The chances of each atom since an element in question last began.
     doors: BTreeMap<u32, Door>,
-    answer: Never,
+    answer: NeverAnswer,
 }
 
-impl Search {
+impl PlanSearch {
     fn new(plan: Rc<ExaminedPlan>, wanted: Vec<u32>, text: &str) -> Self {
         let (entries, skips, doors) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
-        Self { plan, wanted, entries, skips, doors, answer: Never::of(text) }
+        Self { plan, wanted, entries, skips, doors, answer: NeverAnswer::of(text) }
     }
 
     fn turn(&mut self, turn: &ExaminedTurn, explainer: &mut Explainer) {
@@ -319,7 +323,7 @@ impl Search {
     }
 
     /// Returns the answer after the last turn.
-    fn answer(mut self, explainer: &mut Explainer) -> Never {
+    fn answer(mut self, explainer: &mut Explainer) -> NeverAnswer {
         let machine = Rc::clone(&self.plan);
         let machine = &machine.machine;
         let before = self.wanted.iter().flat_map(|wanted| before(machine.element(*wanted)));

@@ -4,12 +4,12 @@ use std::fmt::Write as _;
 
 use mdle_host::{Clocked, rounded};
 
-use super::never::{Beginnings, Chance, Never, Skips, Stay, Turned};
+use super::never::{Beginnings, Chance, NeverAnswer, Skips, Stay, Turned};
 use super::text::{named, scope};
 
 /// Returns the text of the answer for the record `log`.
-pub(super) fn text(never: &Never, log: &str) -> String {
-    let Never { asked, began, runs, skipped, chance, follows, plan, end, is_replaced, last } = never;
+pub(super) fn text(never: &NeverAnswer, log: &str) -> String {
+    let NeverAnswer { asked, began, runs, skipped, chance, follows, plan, end, is_replaced, last } = never;
     let mut text = match began {
         Some(began) => beginnings(asked, began, log),
         None => format!("`{asked}` did not begin\n"),

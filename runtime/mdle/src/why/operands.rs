@@ -9,7 +9,7 @@ use mdle_compiler::plan::{Compared, Condition, QuarkId, Value};
 use mdle_host::operand_words;
 use mdle_runtime::{Examined, Measured, Nanos, OperandWords, SONARS, Words};
 
-use super::lack::{Values, held, lack};
+use super::lack::{TurnFacts, held, lack};
 use super::part_text::PartText;
 use crate::examined::ScopeMoment;
 
@@ -41,7 +41,7 @@ pub(crate) struct MeasuredOperand {
 
 /// The facts of a turn that operands need in addition to their own values.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Facts {
+pub(crate) struct OperandFacts {
     /// Time since the last ping of each sonar; `None` before the first ping.
     pub(crate) ages: [Option<Nanos>; SONARS],
     /// Time for which the law of the previous turn has made no progress; `None` if that law has no goal.
@@ -67,12 +67,12 @@ pub(crate) fn examination(
     machine: &Machine,
     element: Element<'_>,
     scope: &ScopeMoment,
-    facts: &Facts,
+    facts: &OperandFacts,
     words: &dyn Words,
 ) -> Examination {
     let condition = element.condition();
     let mut parts = scope.parts.iter().peekable();
-    let node = Node::of(condition, &mut parts, &mut 0);
+    let node = ConditionPart::of(condition, &mut parts, &mut 0);
     let (Some(node), false) = (node, *condition == Condition::Null) else { return Examination::default() };
     let source: Vec<_> = words.operands_of(element.number()).collect();
     let explaining = Explaining { machine, scope, facts };
@@ -91,13 +91,13 @@ pub(crate) fn examination(
 }
 
 /// A part of a condition with its value.
-struct Node<'c> {
+struct ConditionPart<'c> {
     condition: &'c Condition,
     part: Examined,
     /// Number among the parts that AND and OR join, counted separately inside each NOT and RISING; `None` for
     /// AND and OR.
     number: Option<u32>,
-    parts: Vec<Node<'c>>,
+    parts: Vec<ConditionPart<'c>>,
 }
 
 /// An operator that joins operands in a text.
@@ -108,7 +108,7 @@ enum Join {
     Or,
 }
 
-impl<'c> Node<'c> {
+impl<'c> ConditionPart<'c> {
     /// Pairs a condition with its examined parts, which are in the same order.
     fn of(condition: &'c Condition, parts: &mut Peekable<Iter<'_, Examined>>, next: &mut u32) -> Option<Self> {
         let part = *parts.next()?;
@@ -120,7 +120,7 @@ impl<'c> Node<'c> {
             *next = next.saturating_add(1);
         }
         let next = if is_joining { next } else { &mut apart };
-        let inside = inside.iter().map(|condition| Node::of(condition, parts, next)).collect::<Option<_>>()?;
+        let inside = inside.iter().map(|condition| ConditionPart::of(condition, parts, next)).collect::<Option<_>>()?;
         Some(Self { condition, part, number, parts: inside })
     }
 
@@ -169,7 +169,7 @@ impl<'c> Node<'c> {
 struct Explaining<'e> {
     machine: &'e Machine,
     scope: &'e ScopeMoment,
-    facts: &'e Facts,
+    facts: &'e OperandFacts,
 }
 
 impl Explaining<'_> {
@@ -177,7 +177,7 @@ impl Explaining<'_> {
     /// `true` if the operand is a part of a NOT that has not fired.
     fn operand(
         &self,
-        node: &Node<'_>,
+        node: &ConditionPart<'_>,
         words: Option<&OperandWords<'_>>,
         turns: bool,
         must_end: bool,
@@ -198,7 +198,7 @@ impl Explaining<'_> {
         let must_end_inside = if is_negated { !fired } else { must_end };
         let inside = joined.iter().map(|part| self.operand(part, None, false, must_end_inside)).collect();
         let unit = words.values.first().map(|value| (value.unit, value.scale));
-        let values = Values {
+        let values = TurnFacts {
             since: self.scope.since,
             way: self.scope.way,
             stalled: self.facts.stalled,
@@ -266,7 +266,7 @@ fn still(condition: &Condition, held: &str) -> String {
 }
 
 /// Returns the condition inside all enclosing NOT and RISING.
-fn innermost<'n, 'c>(node: &'n Node<'c>) -> &'n Node<'c> {
+fn innermost<'n, 'c>(node: &'n ConditionPart<'c>) -> &'n ConditionPart<'c> {
     match (node.condition, node.parts.first()) {
         (Condition::Not(_) | Condition::Rising { .. }, Some(inner)) => innermost(inner),
         _ => node,

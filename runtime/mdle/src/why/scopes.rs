@@ -2,7 +2,7 @@
 
 use mdle_runtime::{Cause, Nanos};
 
-use super::operands::{Examination, Facts, examination};
+use super::operands::{Examination, OperandFacts, examination};
 use crate::examined::{ExaminedPlan, PlanMoment, ScopeMoment};
 
 /// Role of a scope at a moment.
@@ -24,7 +24,7 @@ pub(crate) enum ScopeRole {
 
 /// State of a scope at a moment of a turn.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Scope {
+pub(crate) struct ScopeState {
     /// Name of the scope; `None` for an atom and for a scope without a name.
     pub(crate) name: Option<String>,
     /// `true` if the scope is an atom's own.
@@ -44,11 +44,11 @@ pub(crate) struct Scope {
 }
 
 /// Returns the scopes that enclose the atom at a moment, with their conditions explained.
-pub(crate) fn scopes(plan: &ExaminedPlan, moment: &PlanMoment, facts: &Facts) -> Vec<Scope> {
+pub(crate) fn scopes(plan: &ExaminedPlan, moment: &PlanMoment, facts: &OperandFacts) -> Vec<ScopeState> {
     moment.scopes.iter().map(|around| scope(plan, moment, around, facts)).collect()
 }
 
-fn scope(plan: &ExaminedPlan, moment: &PlanMoment, scope: &ScopeMoment, facts: &Facts) -> Scope {
+fn scope(plan: &ExaminedPlan, moment: &PlanMoment, scope: &ScopeMoment, facts: &OperandFacts) -> ScopeState {
     let ExaminedPlan { machine, texts } = plan;
     let element = machine.element(scope.bracket);
     let words = texts.source();
@@ -69,7 +69,7 @@ fn scope(plan: &ExaminedPlan, moment: &PlanMoment, scope: &ScopeMoment, facts: &
     }
     let removed = element.interrupt().filter(|_| is_removed).map(|interrupt| interrupt.text.clone());
     let condition = bracket.map_or_else(String::new, |words| words.condition.to_owned());
-    Scope {
+    ScopeState {
         name: Some(texts.name(scope.bracket)).filter(|name| !name.is_empty()).map(str::to_owned),
         is_atom: element.atom().is_some(),
         line: bracket.map_or_else(String::new, |words| format!("{}:{}", words_file(&**texts, words.at), words.at.line)),

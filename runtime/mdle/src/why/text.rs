@@ -7,12 +7,12 @@ use mdle_runtime::{Nanos, Twist};
 
 use super::explanation::{AppliedAtom, AtomWords, Ended, Explanation, Replaced};
 use super::operands::MeasuredOperand;
-use super::scopes::{Scope, ScopeRole};
-use super::{Answer, Next};
+use super::scopes::{ScopeRole, ScopeState};
+use super::{NextEvents, TurnAnswer};
 
 /// Returns the text of an answer.
-pub(super) fn text(answer: &Answer) -> String {
-    let Answer { explanation, asked, next, safety } = answer;
+pub(super) fn text(answer: &TurnAnswer) -> String {
+    let TurnAnswer { explanation, asked, next, safety } = answer;
     let Explanation { turn, t, replaced, ended, runs, cut, output_age, .. } = explanation;
     let mut text = format!("turn {turn} at {}", Clocked(*t));
     if asked != t {
@@ -76,8 +76,8 @@ fn run(text: &mut String, runs: &AppliedAtom, t: Nanos) {
 }
 
 /// Writes a scope and the operands of its condition.
-pub(super) fn scope(text: &mut String, scope: &Scope) {
-    let Scope { name, is_atom, line, condition, since, part, examination, .. } = scope;
+pub(super) fn scope(text: &mut String, scope: &ScopeState) {
+    let ScopeState { name, is_atom, line, condition, since, part, examination, .. } = scope;
     let name = name.as_deref().unwrap_or(if *is_atom { "atom" } else { "scope" });
     let _ = write!(text, "  {name} ({line}), for {}", Clocked(*since));
     let operands = &examination.operands;
@@ -147,16 +147,16 @@ fn input(input: Twist) -> String {
 }
 
 /// Writes the events after the turn.
-fn following(text: &mut String, next: &Next, now: Nanos) {
+fn following(text: &mut String, next: &NextEvents, now: Nanos) {
     match next {
-        Next::Turn { turn, t, steps } => {
+        NextEvents::Turn { turn, t, steps } => {
             let _ = writeln!(text, "next: turn {turn} at {}, {} s later", Clocked(*t), rounded(t.since(now).0));
             for (cause, to) in steps {
                 let to = to.as_ref().map_or_else(|| "plan over".to_owned(), named);
                 let _ = writeln!(text, "  {to}  <- {cause}");
             }
         }
-        Next::End { t, why } => {
+        NextEvents::End { t, why } => {
             let _ = writeln!(text, "next: no transition up to the end of the record at {}{why}", Clocked(*t));
         }
     }

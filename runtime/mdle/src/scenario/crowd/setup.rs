@@ -11,7 +11,7 @@ use mdle_sim::{Make, Sim, Simulated};
 
 use super::super::arguments::ScenarioOptions;
 use super::super::file::{At, CrowdText, ScenarioError, ScenarioText, duration};
-use super::super::files::Files;
+use super::super::files::ScenarioFiles;
 use super::super::records::begin;
 use super::super::setup::{self, SetupError};
 use super::alphabet::CrowdAlphabet;
@@ -46,7 +46,7 @@ impl CrowdSetup {
     pub(in super::super) fn read(
         crowd: &CrowdText,
         file: &ScenarioText,
-        from: &Files,
+        from: &ScenarioFiles,
         options: &ScenarioOptions,
     ) -> Result<Self, SetupError> {
         let count = *crowd.robots.get_ref();
@@ -125,7 +125,7 @@ fn check(plan: &Arc<Loaded<CrowdAlphabet>>, crowd: &CrowdText) -> Result<(), Sce
 fn robots(
     crowd: &CrowdText,
     file: &ScenarioText,
-    from: &Files,
+    from: &ScenarioFiles,
     seed: Option<u64>,
     period: Duration,
 ) -> Result<Vec<Member>, SetupError> {
