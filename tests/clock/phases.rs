@@ -12,7 +12,7 @@ use std::thread;
 use std::time::Duration;
 
 use mdle_atrv_emulator::atrv::Atrv;
-use mdle_emulator::{Order, Pace};
+use mdle_emulator::{MotionOrder, Pace};
 use mdle_runtime::Pose;
 use mdle_scout_emulator::scout::Scout;
 use mdle_tests::executable::folder;
@@ -146,7 +146,7 @@ fn assert_end<R: Robot>(blow: Blow, ran: &Ran<R>) {
             assert_eq!(status, None, "{errors}");
             assert_eq!(
                 ran.robot.orders().last().map(|(_, order)| order),
-                Some(Order::Drive),
+                Some(MotionOrder::Drive),
                 "its own watchdog stops it"
             );
         }

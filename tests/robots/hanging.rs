@@ -9,7 +9,7 @@ use std::thread;
 use std::time::Duration;
 
 use mdle_atrv_emulator::atrv::{Atrv, step};
-use mdle_emulator::{At, Emulated, Faulty, Pace, Port, serve};
+use mdle_emulator::{Emulated, Faulty, Pace, Port, ScheduledFault, serve};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, mdle};
@@ -28,7 +28,7 @@ fn simulated(body: Body, step: Duration) -> Simulated {
 fn ending<R: Emulated + Send>(folder: &Path, robot: R, pace: Pace, options: &[&str]) -> String {
     fs::write(folder.join("go.mdle"), "{ Go (wait 60s) (Atom (null) (go 20 0)) }\n").unwrap();
     fs::write(folder.join("stale.toml"), "[stale]\noutput = \"150ms\"\nthen = \"end\"\n").unwrap();
-    let hangs: At = "hang@2".parse().unwrap();
+    let hangs: ScheduledFault = "hang@2".parse().unwrap();
     let mut robot = Faulty::new(robot, &[hangs]).unwrap();
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let mut command = Command::new(mdle());

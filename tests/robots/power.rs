@@ -8,7 +8,7 @@ use std::thread;
 use std::time::Duration;
 
 use mdle_atrv_emulator::atrv::{Atrv, step};
-use mdle_emulator::{At, Emulated, Faulty, Pace, Port, serve};
+use mdle_emulator::{Emulated, Faulty, Pace, Port, ScheduledFault, serve};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
@@ -27,7 +27,7 @@ fn reported<R: Emulated + Send>(target: &str, plan: &str, faults: &[&str], robot
     fs::write(folder.join("home.mdle"), plan).unwrap();
     let output = run_mdlec(&folder, &["home.mdle", "--target", target]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let faults: Vec<At> = faults.iter().map(|text| text.parse().expect("a fault")).collect();
+    let faults: Vec<ScheduledFault> = faults.iter().map(|text| text.parse().expect("a fault")).collect();
     let mut robot = Faulty::new(robot, &faults).expect("a robot");
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let output = thread::scope(|scope| {

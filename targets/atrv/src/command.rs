@@ -19,7 +19,7 @@ pub enum Axis {
 
 /// Motion of an axis, in the controller's units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Motion {
+pub struct AxisMotion {
     /// Velocity of the axis; forward or counter-clockwise is positive.
     pub velocity: i32,
     /// Maximum change of the velocity per second.
@@ -34,7 +34,7 @@ pub enum Command {
     /// Report the battery's voltage and the state of the brake.
     Status,
     /// Move the axis as given.
-    Move(Axis, Motion),
+    Move(Axis, AxisMotion),
     /// Restore the default settings.
     Defaults,
     /// Set the brake.

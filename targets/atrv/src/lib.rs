@@ -21,7 +21,7 @@ mod sender;
 mod target;
 
 pub use avoid::avoided;
-pub use command::{Axis, Command, Escape, Motion};
+pub use command::{Axis, AxisMotion, Command, Escape};
 pub use config::{Bumpers, Config, Configured};
 pub use driver::Atrv;
 pub use fault::Fault;

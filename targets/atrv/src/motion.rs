@@ -3,7 +3,7 @@
 
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
-use crate::command::{Axis, Command, Motion};
+use crate::command::{Axis, AxisMotion, Command};
 use crate::config::Config;
 
 /// Maximum distance between two reported positions, in metres; a larger distance is rejected as a leap.
@@ -22,12 +22,12 @@ pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
         0 if config.zero_as_one => 1,
         along => along,
     };
-    let translation = Motion {
+    let translation = AxisMotion {
         velocity: along,
         acceleration: libm::trunc(config.acceleration * config.units_per_metre) as u32,
         torque: config.translation_torque,
     };
-    let rotation = Motion {
+    let rotation = AxisMotion {
         velocity: units(input.omega.0, config.units_per_radian),
         acceleration: config.rotation_acceleration,
         torque: config.rotation_torque,

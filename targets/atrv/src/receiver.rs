@@ -24,7 +24,7 @@ const READS: usize = 64;
 #[derive(Debug)]
 pub(crate) struct Hearing {
     reader: Reader,
-    known: Known,
+    known: ReportedState,
     /// Time of the last position report by this computer's clock; `None` before the first report.
     last_report: Option<Instant>,
     /// Fault found since the last position report; `None` if no fault was found.
@@ -35,7 +35,7 @@ pub(crate) struct Hearing {
 
 /// State of the robot according to its reports.
 #[derive(Debug)]
-struct Known {
+struct ReportedState {
     config: Config,
     odometer: Odometer,
     ring: Ring,
@@ -62,7 +62,7 @@ struct Known {
 impl Hearing {
     /// Returns the state before the first report of a robot whose brake is requested at most once in `period`.
     pub(crate) fn new(config: &Config, period: Duration) -> Self {
-        let known = Known {
+        let known = ReportedState {
             config: config.clone(),
             odometer: Odometer::default(),
             ring: Ring::new(config),
@@ -221,7 +221,7 @@ impl Hearing {
 
     /// Returns the battery's voltage and state. The charging state is derived from the voltage only.
     pub(crate) fn supply(&self) -> Supply {
-        let Known { battery, config, .. } = &self.known;
+        let ReportedState { battery, config, .. } = &self.known;
         let is_plugged = battery.0 > config.plugged_above;
         Supply { battery: *battery, is_low: battery.0 < config.low_battery, is_plugged }
     }
@@ -255,7 +255,7 @@ impl Hearing {
     }
 }
 
-impl Known {
+impl ReportedState {
     /// Stores the content of a packet. Returns `true` if the packet completes a position report.
     fn take(&mut self, packet: &Packet<'_>, at: Nanos) -> Result<bool, Fault> {
         match Report::read(packet).map_err(Fault::Unreadable)? {

@@ -18,22 +18,22 @@ const STOPPING: Duration = Duration::from_millis(100);
 /// The line to the robot, with a watchdog that supervises the motion commands.
 #[derive(Debug)]
 pub(crate) struct Mouth {
-    shared: Arc<Shared>,
+    shared: Arc<SharedLine>,
     watching: Option<JoinHandle<()>>,
     /// Time without a motion command after which the watchdog stops the robot; `None` without a watchdog.
     limit: Option<Duration>,
 }
 
 #[derive(Debug)]
-struct Shared {
+struct SharedLine {
     line: Line,
-    watch: Mutex<Watch>,
+    watch: Mutex<Watchdog>,
     over: Condvar,
 }
 
 /// State of the watchdog.
 #[derive(Debug)]
-struct Watch {
+struct Watchdog {
     /// Time of the last motion command; `None` if the watchdog is disarmed.
     last_motion: Option<Moment>,
     /// `true` if the watchdog has stopped the robot.
@@ -41,8 +41,8 @@ struct Watch {
     is_over: bool,
 }
 
-impl Shared {
-    fn watch(&self) -> MutexGuard<'_, Watch> {
+impl SharedLine {
+    fn watch(&self) -> MutexGuard<'_, Watchdog> {
         // A panic cannot leave this state inconsistent.
         self.watch.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -52,9 +52,9 @@ impl Mouth {
     /// Returns a sender of commands to `line`. With a watchdog (limit and stop commands), the stop commands are sent if
     /// no motion command follows the last one within the limit.
     pub(crate) fn new(line: Line, watchdog: Option<(Duration, [FrameBytes; 2])>) -> Self {
-        let watch = Watch { last_motion: None, has_bitten: false, is_over: false };
+        let watch = Watchdog { last_motion: None, has_bitten: false, is_over: false };
         let limit = watchdog.as_ref().map(|(limit, _)| *limit);
-        let shared = Arc::new(Shared { line, watch: Mutex::new(watch), over: Condvar::new() });
+        let shared = Arc::new(SharedLine { line, watch: Mutex::new(watch), over: Condvar::new() });
         let watching = watchdog.and_then(|(limit, stop)| {
             let shared = Arc::clone(&shared);
             let thread = thread::Builder::new().name("watchdog".to_owned());
@@ -98,7 +98,7 @@ impl Mouth {
         self.is_in_time(&self.shared.watch())
     }
 
-    fn is_in_time(&self, watch: &Watch) -> Result<(), Fault> {
+    fn is_in_time(&self, watch: &Watchdog) -> Result<(), Fault> {
         let Some(limit) = self.limit else { return Ok(()) };
         // If this program or the computer was suspended, the watchdog was suspended too.
         let is_late = watch.has_bitten || watch.last_motion.is_some_and(|time| time.elapsed() >= limit);
@@ -124,7 +124,7 @@ impl Drop for Mouth {
 }
 
 /// Runs the watchdog until the sender is dropped.
-fn keep_watch(shared: &Shared, limit: Duration, stop: &[FrameBytes; 2]) {
+fn keep_watch(shared: &SharedLine, limit: Duration, stop: &[FrameBytes; 2]) {
     let mut watch = shared.watch();
     while !watch.is_over {
         let silent = watch.last_motion.map(Moment::elapsed);

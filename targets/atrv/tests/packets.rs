@@ -2,7 +2,7 @@
 //! of commands, and the contents of reports.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test fails by panicking")]
 
-use mdle_atrv::{Axis, Command, Escape, Garbled, Motion, Packet, Reader, Report, Unreadable};
+use mdle_atrv::{Axis, AxisMotion, Command, Escape, Garbled, Packet, Reader, Report, Unreadable};
 
 fn bytes(hex: &str) -> Vec<u8> {
     hex.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
@@ -39,8 +39,8 @@ fn motion(axis: Axis, velocity: i32) -> Command {
     Command::Move(
         axis,
         match axis {
-            Axis::Translation => Motion { velocity, acceleration: 69_827, torque: 30_000 },
-            Axis::Rotation => Motion { velocity, acceleration: 100_000, torque: 35_000 },
+            Axis::Translation => AxisMotion { velocity, acceleration: 69_827, torque: 30_000 },
+            Axis::Rotation => AxisMotion { velocity, acceleration: 100_000, torque: 35_000 },
         },
     )
 }
@@ -111,7 +111,7 @@ fn reports_say_what_the_worked_packets_should() {
 
 #[test]
 fn a_value_that_is_1b_is_marked_or_avoided() {
-    let turn = |velocity| Command::Move(Axis::Rotation, Motion { velocity, acceleration: 100_000, torque: 35_000 });
+    let turn = |velocity| Command::Move(Axis::Rotation, AxisMotion { velocity, acceleration: 100_000, torque: 35_000 });
     let marked = turn(0x1B40).frame(Escape::Mark);
     let stuffed = bytes("1B 02 02 00 07 0E 01 00 00 1B 00 40 00 01 86 A0 00 00 88 B8 01 47 1B 03");
     assert_eq!((marked.bytes(), stuffed.len()), (&*stuffed, 24));

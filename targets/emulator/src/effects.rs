@@ -9,10 +9,10 @@ use std::time::Duration;
 use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
 use mdle_runtime::{Sensed, SonarId};
 
-use crate::fault::{At, Fault};
-use crate::orders::Order;
+use crate::fault::{Fault, ScheduledFault};
+use crate::orders::MotionOrder;
 use crate::serve::Emulated as _;
-use crate::trial::{FinishedRun, Motion, Trial, ran, started};
+use crate::trial::{FinishedRun, Trial, WheelMotion, ran, started};
 
 /// World time at which a fault begins, in seconds.
 const BEGINS: u64 = 3;
@@ -55,8 +55,8 @@ pub struct Effect {
     stop: Result<(), &'static str>,
     /// `true` if the stop may also succeed where a failure is expected.
     may_stop: bool,
-    motion: Motion,
-    orders: &'static [Order],
+    motion: WheelMotion,
+    orders: &'static [MotionOrder],
 }
 
 impl Effect {
@@ -64,7 +64,7 @@ impl Effect {
     /// and can stop the robot. After the stop, the wheels' motion is `motion`, and the last orders received are
     /// `orders`.
     #[must_use]
-    pub const fn of(faults: &'static [&'static str], motion: Motion, orders: &'static [Order]) -> Self {
+    pub const fn of(faults: &'static [&'static str], motion: WheelMotion, orders: &'static [MotionOrder]) -> Self {
         Self {
             faults,
             speed: Speed::Ahead,
@@ -136,18 +136,18 @@ impl Effect {
         let motion = T::motion(&robot);
         let motion =
             if motion == self.motion { Ok(()) } else { Err(format!("{motion:?} instead of {:?}", self.motion)) };
-        let orders: Vec<(Duration, Order)> = T::orders(&robot).iter().collect();
+        let orders: Vec<(Duration, MotionOrder)> = T::orders(&robot).iter().collect();
         [output, stop, motion, self.ordered(&orders)].into_iter().collect()
     }
 
     /// Compares the last orders with the expected ones, and checks that the driver ceases to send orders within
     /// [`STOPPING`] of the first stop order.
-    fn ordered(&self, orders: &[(Duration, Order)]) -> Result<(), String> {
-        let kinds: Vec<Order> = orders.iter().map(|(_, order)| *order).collect();
+    fn ordered(&self, orders: &[(Duration, MotionOrder)]) -> Result<(), String> {
+        let kinds: Vec<MotionOrder> = orders.iter().map(|(_, order)| *order).collect();
         if !kinds.ends_with(self.orders) {
             return Err(format!("the orders {kinds:?} do not end with {:?}", self.orders));
         }
-        let stands = orders.iter().find(|(age, order)| age.as_secs() >= BEGINS && *order == Order::Stand);
+        let stands = orders.iter().find(|(age, order)| age.as_secs() >= BEGINS && *order == MotionOrder::Stand);
         match (stands, orders.last()) {
             (Some((first, _)), Some((last, _))) if *last - *first > STOPPING => {
                 Err(format!("orders from {first:?} to {last:?}"))
@@ -230,7 +230,8 @@ pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &
 /// Returns a sentence for each fault that the robot can have and that has no row. Late frames are not checked: they
 /// need a clock, which robots in lockstep do not have.
 fn missing<T: Trial>(effects: &[Effect]) -> Vec<String> {
-    let faults = effects.iter().flat_map(|effect| effect.faults).filter_map(|fault| fault.parse::<At>().ok());
+    let faults =
+        effects.iter().flat_map(|effect| effect.faults).filter_map(|fault| fault.parse::<ScheduledFault>().ok());
     let names: Vec<String> = faults.map(|at| at.fault.to_string()).collect();
     let can = |fault: &Fault| if let Fault::Body(ailment) = fault { T::Emulated::can_suffer(*ailment) } else { true };
     let is_missing = |fault: &Fault| !matches!(fault, Fault::Late(_)) && !names.contains(&fault.to_string());

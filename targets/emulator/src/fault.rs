@@ -103,7 +103,7 @@ const KINDS: [(&str, Fault); 24] = [
 
 /// A fault with the time at which it begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct At {
+pub struct ScheduledFault {
     /// Fault that begins at `time`.
     pub fault: Fault,
     /// World time at which the fault begins, counted from when the robot was switched on.
@@ -148,7 +148,7 @@ impl fmt::Display for Fault {
     }
 }
 
-impl FromStr for At {
+impl FromStr for ScheduledFault {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use mdle_simulator::Footprint;
 
-use crate::fault::{Ailment, At, Fault};
+use crate::fault::{Ailment, Fault, ScheduledFault};
 use crate::serve::{Embodied, Emulated};
 
 /// Noise bytes of an unshielded line, repeated as often as needed.
@@ -16,7 +16,7 @@ const NOISE: [u8; 3] = [0xFF, 0x00, 0xA5];
 pub struct Faulty<R> {
     robot: R,
     /// Faults that have not begun yet.
-    coming: Vec<At>,
+    coming: Vec<ScheduledFault>,
     begun: Vec<Fault>,
     /// Time since the robot was switched on.
     age: Duration,
@@ -31,9 +31,9 @@ impl<R: Emulated> Faulty<R> {
     ///
     /// # Errors
     /// Fails if this kind of robot cannot have one of the faults.
-    pub fn new(robot: R, faults: &[At]) -> Result<Self, String> {
+    pub fn new(robot: R, faults: &[ScheduledFault]) -> Result<Self, String> {
         let cannot = faults.iter().find(|at| matches!(at.fault, Fault::Body(ailment) if !R::can_suffer(ailment)));
-        if let Some(At { fault, .. }) = cannot {
+        if let Some(ScheduledFault { fault, .. }) = cannot {
             return Err(format!("--fault {fault}: this robot cannot have that"));
         }
         let mut faulty = Self {
@@ -77,7 +77,7 @@ impl<R: Emulated> Faulty<R> {
 
     /// Begins the faults that are due.
     fn begin(&mut self) {
-        for At { fault, .. } in self.coming.extract_if(.., |at| at.time <= self.age) {
+        for ScheduledFault { fault, .. } in self.coming.extract_if(.., |at| at.time <= self.age) {
             self.begun.push(fault);
             if let Fault::Body(ailment) = fault {
                 self.robot.suffer(ailment);
@@ -187,7 +187,7 @@ mod tests {
 
     /// Returns the fragments in which three frames arrive with these faults.
     fn frames(faults: &[&str]) -> Vec<Vec<u8>> {
-        let faults: Vec<At> = faults.iter().map(|text| text.parse().expect("a fault")).collect();
+        let faults: Vec<ScheduledFault> = faults.iter().map(|text| text.parse().expect("a fault")).collect();
         let mut robot = Faulty::new(Robot::default(), &faults).expect("a robot");
         (0..3).flat_map(|_| robot.take_frames()).collect()
     }
@@ -245,10 +245,10 @@ mod tests {
             ("bumper@2m", "after the @: `2m` is a length: expected a time in s, ms, min, h"),
             ("bumper@1e9", "after the @: expected a time from 0ns"),
         ] {
-            assert!(text.parse::<At>().is_err_and(|error| error.starts_with(message)), "{text}");
+            assert!(text.parse::<ScheduledFault>().is_err_and(|error| error.starts_with(message)), "{text}");
         }
         for (text, same) in [("late=2500ms@1500ms", "late=2500@1.5"), ("late=2.5s@1min", "late=2500@60")] {
-            assert_eq!(text.parse::<At>(), same.parse::<At>(), "{text}");
+            assert_eq!(text.parse::<ScheduledFault>(), same.parse::<ScheduledFault>(), "{text}");
         }
         let filler = ["filler@3"].map(|text| text.parse().expect("a fault"));
         let refused = Faulty::new(Robot::default(), &filler).map(|_| ());

@@ -20,14 +20,14 @@ mod trial;
 pub use driven::{Driven, driven};
 #[cfg(feature = "trial")]
 pub use effects::{Effect, Speed, untrue_effects};
-pub use fault::{Ailment, At, Fault};
+pub use fault::{Ailment, Fault, ScheduledFault};
 pub use faulty::Faulty;
 pub use options::EmulatorOptions;
-pub use orders::{Order, Orders};
+pub use orders::{MotionOrder, OrderLog};
 pub use port::Port;
 pub use program::program;
 pub use serve::{Embodied, Emulated, Pace, STEP, serve};
 pub use several::{Seat, Several};
 pub use staged::Staged;
 #[cfg(feature = "trial")]
-pub use trial::{Motion, OnItsLine, Trial, memory_asked_for};
+pub use trial::{OnItsLine, Trial, WheelMotion, memory_asked_for};

@@ -8,7 +8,7 @@ use mdle_host::Quantity;
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use mdle_simulator::{Start, StartError};
 
-use crate::fault::At;
+use crate::fault::ScheduledFault;
 
 /// Values of the command-line options of all robot emulators.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub struct EmulatorOptions {
     pub(crate) seed: Option<u64>,
     pub(crate) link: Option<PathBuf>,
     pub(crate) lockstep: Option<Duration>,
-    pub(crate) faults: Vec<At>,
+    pub(crate) faults: Vec<ScheduledFault>,
 }
 
 impl EmulatorOptions {
@@ -115,7 +115,7 @@ fn of_behavior(command: Command) -> Command {
                      simulated world since the robot was switched on. A fault affects all robots.",
                 )
                 .action(ArgAction::Append)
-                .value_parser(value_parser!(At)),
+                .value_parser(value_parser!(ScheduledFault)),
         )
 }
 

@@ -8,7 +8,7 @@ const KEPT: usize = 64;
 
 /// Kind of a motion command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Order {
+pub enum MotionOrder {
     /// The command moves the robot.
     Drive,
     /// The command stops the robot.
@@ -21,11 +21,11 @@ pub enum Order {
 
 /// The last 64 orders that the robot has received, oldest first, each with the world time at which it arrived.
 #[derive(Debug, Clone, Default)]
-pub struct Orders(VecDeque<(Duration, Order)>);
+pub struct OrderLog(VecDeque<(Duration, MotionOrder)>);
 
-impl Orders {
+impl OrderLog {
     /// Stores an order that has arrived at the world time `age`.
-    pub fn push(&mut self, age: Duration, order: Order) {
+    pub fn push(&mut self, age: Duration, order: MotionOrder) {
         if self.0.len() >= KEPT {
             self.0.pop_front();
         }
@@ -33,13 +33,13 @@ impl Orders {
     }
 
     /// Returns the stored orders, oldest first.
-    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (Duration, Order)> {
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (Duration, MotionOrder)> {
         self.0.iter().copied()
     }
 
     /// Returns the last order and the world time at which it arrived; `None` before the first order.
     #[must_use]
-    pub fn last(&self) -> Option<(Duration, Order)> {
+    pub fn last(&self) -> Option<(Duration, MotionOrder)> {
         self.0.back().copied()
     }
 }

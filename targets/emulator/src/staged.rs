@@ -31,7 +31,7 @@ struct SharedState<T> {
 }
 
 /// The robot, with the state that it shares with the test.
-struct Watched<R, T> {
+struct WatchedRobot<R, T> {
     robot: R,
     look: fn(&R) -> T,
     period: Duration,
@@ -54,7 +54,7 @@ impl<T: Clone + Send + 'static> Staged<T> {
             ailment: Mutex::new(None),
             is_over: AtomicBool::new(false),
         });
-        let mut watched = Watched { robot, look, period, seen: Arc::clone(&seen) };
+        let mut watched = WatchedRobot { robot, look, period, seen: Arc::clone(&seen) };
         let serving = thread::spawn(move || {
             let seen = Arc::clone(&watched.seen);
             serve(&mut watched, &port, Pace::Lockstep(period), &|| !seen.is_over.load(Ordering::Acquire))
@@ -98,7 +98,7 @@ impl<T> Drop for Staged<T> {
     }
 }
 
-impl<R: Emulated, T> Emulated for Watched<R, T> {
+impl<R: Emulated, T> Emulated for WatchedRobot<R, T> {
     fn push(&mut self, bytes: &[u8]) {
         self.robot.push(bytes);
     }

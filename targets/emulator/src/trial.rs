@@ -11,9 +11,9 @@ use mdle_serial::{Clock, Configured, SerialRobot};
 use mdle_simulator::{Body, Make, Simulated, World};
 
 use crate::driven::{Driven, driven};
-use crate::fault::{Ailment, At};
+use crate::fault::{Ailment, ScheduledFault};
 use crate::faulty::Faulty;
-use crate::orders::Orders;
+use crate::orders::OrderLog;
 use crate::serve::{Emulated, Pace};
 use crate::staged::Staged;
 
@@ -28,7 +28,7 @@ const HALL: &str =
 
 /// Motion of a robot's wheels at the end of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
+pub enum WheelMotion {
     /// The wheels turn.
     Moves,
     /// The wheels are at rest, without a brake.
@@ -63,10 +63,10 @@ pub trait Trial {
     fn pose(robot: &Self::Emulated) -> Pose;
 
     /// Returns the motion of the robot's wheels.
-    fn motion(robot: &Self::Emulated) -> Motion;
+    fn motion(robot: &Self::Emulated) -> WheelMotion;
 
     /// Returns the orders that the robot has received.
-    fn orders(robot: &Self::Emulated) -> &Orders;
+    fn orders(robot: &Self::Emulated) -> &OrderLog;
 }
 
 /// Returns the period of the robot's turns.
@@ -211,6 +211,6 @@ pub(crate) fn started<T: Trial>(fault: &str) -> Result<Result<(), FaultOf<T>>, S
 /// Returns a robot with these faults in front of the wall of [`HALL`].
 fn faulty<T: Trial>(faults: &[&str]) -> Result<Faulty<T::Emulated>, String> {
     let world = World::parse("hall", HALL).map_err(|error| error.to_string())?;
-    let faults: Vec<At> = faults.iter().map(|fault| fault.parse()).collect::<Result<_, _>>()?;
+    let faults: Vec<ScheduledFault> = faults.iter().map(|fault| fault.parse()).collect::<Result<_, _>>()?;
     Faulty::new(switched_on::<T>(&world, world.start, None)?, &faults)
 }

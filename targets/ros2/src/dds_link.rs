@@ -20,7 +20,7 @@ use crate::publishers::Publishers;
 use crate::report::StateMessages;
 use crate::search::{Search, receive};
 use crate::sensing::Sensing;
-use crate::source::{Input, Source};
+use crate::source::{Input, TopicPurpose};
 use crate::stamp::ros_now;
 
 /// Maximum number of further participants with which the driver searches for the robot.
@@ -206,7 +206,7 @@ impl Link for DdsLink {
         self.notice_suspension();
         let Self { readers, publishers, participant, clock, .. } = self;
         receive(readers, &mut |input, index, payload, writer| {
-            if let (Source::Clock, Some(clock)) = (input.source, clock.as_mut())
+            if let (TopicPurpose::Clock, Some(clock)) = (input.source, clock.as_mut())
                 && let Ok(message) = payload.read::<ClockMessage>()
             {
                 *clock = message.clock.nanos();

@@ -132,7 +132,7 @@ fn listed_topics(endpoints: &[Endpoint]) -> Option<String> {
 mod tests {
     use super::*;
     use crate::config::Configured;
-    use crate::source::Source;
+    use crate::source::TopicPurpose;
 
     fn endpoint(topic: &str, kind: &str) -> Endpoint {
         Endpoint { topic: dds_topic(topic), kind: dds_type(kind), is_reliable: true, mismatch: None }
@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn a_missing_topic_names_what_is_there() {
         let odom =
-            Input { source: Source::Odometry, topic: "/odom".to_owned(), kind: "nav_msgs/msg/Odometry", limit: 500 };
+            Input { source: TopicPurpose::Odometry, topic: "/odom".to_owned(), kind: "nav_msgs/msg/Odometry", limit: 500 };
         let mut graph = Graph::default();
         assert_eq!(graph.about_input(&odom, ""), "nobody publishes `/odom` (nav_msgs/msg/Odometry)");
         assert!(!graph.is_offered(&odom));

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::fault::Fault;
 use crate::graph::Graph;
-use crate::source::{Input, Source};
+use crate::source::{Input, TopicPurpose};
 
 /// Minimum time for which the search at the start waits for messages of a second publisher on the graph.
 const WATCH: Duration = Duration::from_secs(1);
@@ -35,7 +35,7 @@ impl Publishers {
         graph: impl Fn() -> Graph,
         take: impl FnOnce() -> Result<(), Fault>,
     ) -> Result<(), Fault> {
-        if input.source != Source::Odometry {
+        if input.source != TopicPurpose::Odometry {
             return take();
         }
         let several = |may_be_restart| {
@@ -82,7 +82,7 @@ mod tests {
 
     const KIND: &str = "nav_msgs/msg/Odometry";
 
-    fn input(source: Source) -> Input {
+    fn input(source: TopicPurpose) -> Input {
         Input { source, topic: "/odom".to_owned(), kind: KIND, limit: 1 }
     }
 
@@ -94,7 +94,7 @@ mod tests {
     }
 
     /// Passes messages of the publishers `ids` in this order; the last message causes `fault`.
-    fn passed(ids: &[u8], source: Source, fault: Option<Fault>) -> Result<(), Fault> {
+    fn passed(ids: &[u8], source: TopicPurpose, fault: Option<Fault>) -> Result<(), Fault> {
         let (input, mut publishers) = (input(source), Publishers::default());
         let pass = |publishers: &mut Publishers, id: u8, fault: Option<Fault>| {
             publishers.pass(&input, [id; 16], || graph(2), || fault.map_or(Ok(()), Err))
@@ -110,21 +110,21 @@ mod tests {
 
     #[test]
     fn a_publisher_after_another_is_a_restart() {
-        assert_eq!(passed(&[1, 1, 2, 2, 2], Source::Odometry, None), Ok(()));
-        assert_eq!(passed(&[1, 2, 1], Source::Odometry, None), several(false));
-        assert_eq!(passed(&[1, 2, 3, 2], Source::Odometry, None), several(false));
-        assert_eq!(passed(&[1, 2, 1], Source::Scan, None), Ok(()));
+        assert_eq!(passed(&[1, 1, 2, 2, 2], TopicPurpose::Odometry, None), Ok(()));
+        assert_eq!(passed(&[1, 2, 1], TopicPurpose::Odometry, None), several(false));
+        assert_eq!(passed(&[1, 2, 3, 2], TopicPurpose::Odometry, None), several(false));
+        assert_eq!(passed(&[1, 2, 1], TopicPurpose::Scan, None), Ok(()));
     }
 
     #[test]
     fn a_jump_between_publishers_is_no_jump() {
         let jumped = || Fault::Jumped { way: 1.0, degrees: 0.0, seconds: 0.1 };
-        assert_eq!(passed(&[1, 2], Source::Odometry, Some(jumped())), several(true));
-        assert_eq!(passed(&[1, 2], Source::Odometry, Some(Fault::Backwards(2.0))), several(true));
-        assert_eq!(passed(&[1, 2], Source::Odometry, Some(Fault::NoPose)), Err(Fault::NoPose));
-        assert_eq!(passed(&[1, 1], Source::Odometry, Some(jumped())), Err(jumped()));
+        assert_eq!(passed(&[1, 2], TopicPurpose::Odometry, Some(jumped())), several(true));
+        assert_eq!(passed(&[1, 2], TopicPurpose::Odometry, Some(Fault::Backwards(2.0))), several(true));
+        assert_eq!(passed(&[1, 2], TopicPurpose::Odometry, Some(Fault::NoPose)), Err(Fault::NoPose));
+        assert_eq!(passed(&[1, 1], TopicPurpose::Odometry, Some(jumped())), Err(jumped()));
         let alone = Publishers { last: Some([1; 16]), ..Publishers::default() }.pass(
-            &input(Source::Odometry),
+            &input(TopicPurpose::Odometry),
             [2; 16],
             || graph(1),
             || Err(jumped()),
@@ -134,7 +134,7 @@ mod tests {
 
     #[test]
     fn a_silent_second_publisher_delays_the_start() {
-        let (odometry, mut probation) = (input(Source::Odometry), Probation::default());
+        let (odometry, mut probation) = (input(TopicPurpose::Odometry), Probation::default());
         let mut is_over =
             |count: usize, millis: u64| probation.is_over(&odometry, &graph(count), Duration::from_millis(millis));
         assert_eq!([is_over(1, 0), is_over(2, 500), is_over(2, 1499), is_over(2, 1500)], [true, false, false, true]);

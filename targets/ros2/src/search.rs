@@ -16,7 +16,7 @@ use crate::graph::Graph;
 use crate::participant::{Participant, Reader};
 use crate::publishers::{Probation, Publishers};
 use crate::sensing::Sensing;
-use crate::source::{Input, Source};
+use crate::source::{Input, TopicPurpose};
 use crate::stamp::ros_now;
 
 /// Interval between two checks of the graph for topics.
@@ -103,7 +103,7 @@ impl Search<'_> {
             let missing = missing(sensing, &graph);
             let is_heard = commands.as_mut().is_some_and(|commands| commands.are_heard(&graph));
             let passed = self.begun.elapsed();
-            let mut odometry = sensing.inputs().filter(|input| input.source == Source::Odometry);
+            let mut odometry = sensing.inputs().filter(|input| input.source == TopicPurpose::Odometry);
             let is_alone = odometry.all(|input| probation.is_over(input, &graph, passed));
             match commands.take() {
                 Some(found) if is_heard && missing.is_empty() && (is_alone || passed > limit) => {

@@ -20,7 +20,7 @@ use crate::messages::{
 };
 use crate::odometer::Odometer;
 use crate::scan::{Direction, Scanner, sonar_at};
-use crate::source::{Input, Source, has_variance, inputs};
+use crate::source::{Input, TopicPurpose, has_variance, inputs};
 
 /// A topic, with information about its last accepted message.
 #[derive(Debug, Clone)]
@@ -91,7 +91,7 @@ impl Sensing {
         let now = now.max(self.simulated());
         let (source, since) = (seen.input.source, seen.at.map_or(now, |at| now.saturating_sub(at)));
         let taken = match source {
-            Source::Odometry => match payload.read::<Odometry>() {
+            TopicPurpose::Odometry => match payload.read::<Odometry>() {
                 Err(why) => Err(why),
                 Ok(message) if self.odometer.take(&message, since.as_secs_f64())? => {
                     self.positioned = at;
@@ -99,14 +99,14 @@ impl Sensing {
                 }
                 Ok(_) => Err("its time is not after that of the message before".to_owned()),
             },
-            Source::Scan => payload.read().and_then(|scan: LaserScan| self.take_scan(&scan, now, at)),
-            Source::Range(number) => self.read_range(payload).map(|range| self.take_range(number, &range, at)),
-            Source::Bumper => self.take_bumper(payload),
-            Source::Battery => payload.read().and_then(|message: BatteryState| {
+            TopicPurpose::Scan => payload.read().and_then(|scan: LaserScan| self.take_scan(&scan, now, at)),
+            TopicPurpose::Range(number) => self.read_range(payload).map(|range| self.take_range(number, &range, at)),
+            TopicPurpose::Bumper => self.take_bumper(payload),
+            TopicPurpose::Battery => payload.read().and_then(|message: BatteryState| {
                 self.supply = supply(&message, self.config.low_battery)?;
                 Ok(message.header.stamp.nanos())
             }),
-            Source::Clock => payload.read::<ClockMessage>().map(|message| {
+            TopicPurpose::Clock => payload.read::<ClockMessage>().map(|message| {
                 self.take_clock(message.clock.nanos());
                 self.clock
             }),
@@ -225,8 +225,8 @@ impl Sensing {
     #[must_use]
     pub fn stamps(&self) -> (i64, i64) {
         let looks = |source| match source {
-            Source::Scan | Source::Range(_) => true,
-            Source::Odometry | Source::Bumper | Source::Battery | Source::Clock => false,
+            TopicPurpose::Scan | TopicPurpose::Range(_) => true,
+            TopicPurpose::Odometry | TopicPurpose::Bumper | TopicPurpose::Battery | TopicPurpose::Clock => false,
         };
         let seen = self.seen.iter().filter(|seen| looks(seen.input.source)).map(|seen| seen.stamp);
         (self.odometer.stamp(), seen.min().unwrap_or(i64::MAX))
@@ -285,7 +285,7 @@ impl Sensing {
 /// this topic.
 fn reports_changes(input: &Input) -> bool {
     match input.source {
-        Source::Bumper | Source::Battery => input.limit == 0,
-        Source::Odometry | Source::Scan | Source::Range(_) | Source::Clock => false,
+        TopicPurpose::Bumper | TopicPurpose::Battery => input.limit == 0,
+        TopicPurpose::Odometry | TopicPurpose::Scan | TopicPurpose::Range(_) | TopicPurpose::Clock => false,
     }
 }

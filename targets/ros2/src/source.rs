@@ -5,7 +5,7 @@ use crate::config::{Config, has_topic};
 
 /// The purpose of a topic that the driver reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub enum TopicPurpose {
     /// Odometry, of type `nav_msgs/msg/Odometry`.
     Odometry,
     /// Laser scan, of type `sensor_msgs/msg/LaserScan`.
@@ -20,7 +20,7 @@ pub enum Source {
     Clock,
 }
 
-impl Source {
+impl TopicPurpose {
     /// Returns the configuration key that names the topic, and `true` if the only topic of its type may be proposed. A
     /// bumper topic may not be proposed, because its type is common. Returns `None` for the clock, whose name is fixed.
     #[must_use]
@@ -40,7 +40,7 @@ impl Source {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Input {
     /// Purpose of the topic.
-    pub source: Source,
+    pub source: TopicPurpose,
     /// Absolute name of the topic.
     pub topic: String,
     /// Type of the messages, such as `std_msgs/msg/Bool`.
@@ -59,25 +59,25 @@ pub fn inputs(config: &Config) -> Result<Vec<Input>, String> {
         config.topic(name).map(|topic| inputs.push(Input { source, topic, kind, limit }))
     };
     if config.use_sim_time {
-        add(Source::Clock, "/clock", "rosgraph_msgs/msg/Clock", 0)?;
+        add(TopicPurpose::Clock, "/clock", "rosgraph_msgs/msg/Clock", 0)?;
     }
     // The odometry comes before the scan, because it provides the pose of the scan.
-    add(Source::Odometry, &config.odom, "nav_msgs/msg/Odometry", config.stale_odom)?;
+    add(TopicPurpose::Odometry, &config.odom, "nav_msgs/msg/Odometry", config.stale_odom)?;
     if has_topic(config.bumper_type) {
         let kind = match config.bumper_type {
             BumperSource::Hazard => "irobot_create_msgs/msg/HazardDetectionVector",
             BumperSource::None | BumperSource::Bool | BumperSource::Scan => "std_msgs/msg/Bool",
         };
-        add(Source::Bumper, &config.bumper, kind, config.stale_bumper)?;
+        add(TopicPurpose::Bumper, &config.bumper, kind, config.stale_bumper)?;
     }
     if !config.scan.is_empty() {
-        add(Source::Scan, &config.scan, "sensor_msgs/msg/LaserScan", config.stale_scan)?;
+        add(TopicPurpose::Scan, &config.scan, "sensor_msgs/msg/LaserScan", config.stale_scan)?;
     }
     for (number, sensor) in config.ranges.0.iter().enumerate() {
-        add(Source::Range(number), &sensor.topic, "sensor_msgs/msg/Range", config.stale_scan)?;
+        add(TopicPurpose::Range(number), &sensor.topic, "sensor_msgs/msg/Range", config.stale_scan)?;
     }
     if !config.battery.is_empty() {
-        add(Source::Battery, &config.battery, "sensor_msgs/msg/BatteryState", 0)?;
+        add(TopicPurpose::Battery, &config.battery, "sensor_msgs/msg/BatteryState", 0)?;
     }
     Ok(inputs)
 }

@@ -15,7 +15,7 @@ use mdle_ros2::config::{Config, Configured};
 use mdle_ros2::messages::{BatteryState, Bool, Header, LaserScan, Odometry, Time};
 use mdle_ros2::report::StateMessages;
 use mdle_ros2::sensing::Sensing;
-use mdle_ros2::source::{Source, inputs};
+use mdle_ros2::source::{TopicPurpose, inputs};
 use mdle_ros2::{Fault, Link, Pacing, Ros2, alphabet};
 use mdle_runtime::{Meters, Nanos, PathStore, Pose, Radians, Twist};
 use mdle_serial::Moment;
@@ -119,11 +119,11 @@ impl Base {
     fn publish(&mut self) {
         for (number, input) in inputs(&self.config).unwrap().iter().enumerate() {
             let payload = match input.source {
-                Source::Odometry => Payload::of(&self.odometry()),
-                Source::Scan => Payload::of(&self.scan()),
-                Source::Bumper => Payload::of(&Bool { data: self.is_pressed }),
-                Source::Battery => Payload::of(&BatteryState { header: self.header(), ..self.battery.clone() }),
-                Source::Range(_) | Source::Clock => continue,
+                TopicPurpose::Odometry => Payload::of(&self.odometry()),
+                TopicPurpose::Scan => Payload::of(&self.scan()),
+                TopicPurpose::Bumper => Payload::of(&Bool { data: self.is_pressed }),
+                TopicPurpose::Battery => Payload::of(&BatteryState { header: self.header(), ..self.battery.clone() }),
+                TopicPurpose::Range(_) | TopicPurpose::Clock => continue,
             };
             self.sent.push((number, payload.unwrap()));
         }

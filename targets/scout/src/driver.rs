@@ -12,7 +12,7 @@ use crate::config::Config;
 use crate::fault::Fault;
 use crate::frame::{self, Frame};
 use crate::freshness::Freshness;
-use crate::line::{Line, SPEED};
+use crate::line::{SPEED, ScoutLine};
 use crate::odometer::Odometer;
 use crate::ring::Ring;
 use crate::state::{self, State};
@@ -38,7 +38,7 @@ const ZEROING: Duration = Duration::from_secs(5);
 /// Driver of a Scout that answers.
 #[derive(Debug)]
 pub struct Scout {
-    line: Line,
+    line: ScoutLine,
     config: Config,
     clock: Clock,
     odometer: Odometer,
@@ -69,7 +69,7 @@ impl Scout {
     /// # Errors
     /// Fails if the line or the robot is missing, or if the robot's emergency stop is pressed.
     pub fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
-        let line = Line::open(&config.device)?;
+        let line = ScoutLine::open(&config.device)?;
         let ring = Ring::new(&config.sonars, Nanos(config.gap.saturating_mul(1_000_000)));
         let (odometer, freshness, times) = (Odometer::default(), Freshness::default(), Times::new(clock));
         // Forward motion and rotation share each wheel's deceleration: in the worst case, each gets half of it.

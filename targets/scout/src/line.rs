@@ -18,12 +18,12 @@ const REFUSED: u8 = 8;
 
 /// An open line to a Scout.
 #[derive(Debug)]
-pub(crate) struct Line {
+pub(crate) struct ScoutLine {
     line: mdle_serial::Line,
     reader: Reader,
 }
 
-impl Line {
+impl ScoutLine {
     /// Opens the serial port `device`, or `tcp:ADDRESS:PORT`. Nothing is sent.
     ///
     /// # Errors
@@ -43,10 +43,10 @@ impl Line {
         self.ask_while(command, deadline, &|| Ok(()))
     }
 
-    /// Sends `command` and waits for its answer as [`Line::ask`] does; stops waiting when `go_on` returns an error.
+    /// Sends `command` and waits for its answer as [`ScoutLine::ask`] does; stops waiting when `go_on` returns an error.
     ///
     /// # Errors
-    /// Fails if [`Line::ask`] or `go_on` fails.
+    /// Fails if [`ScoutLine::ask`] or `go_on` fails.
     pub(crate) fn ask_while(
         &mut self,
         command: &Command,

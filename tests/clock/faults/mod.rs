@@ -17,7 +17,7 @@ use std::time::Duration;
 
 use mdle_atrv_emulator::atrv::{Atrv, step};
 use mdle_atrv_emulator::wire::report;
-use mdle_emulator::{Ailment, At, Emulated, Fault, Faulty, Order, Pace, Port, serve};
+use mdle_emulator::{Ailment, Emulated, Fault, Faulty, MotionOrder, Pace, Port, ScheduledFault, serve};
 use mdle_scout_emulator::scout::Scout;
 use mdle_scout_emulator::wire::answer;
 use mdle_sim::{Body, Make, Simulated, World};
@@ -115,7 +115,7 @@ impl Robot {
     ) -> (Row, Duration) {
         let port = Port::open().unwrap();
         let child = self.started(port.path(), pace);
-        let faults = fault.map(|fault| At { fault, time: BEGINS });
+        let faults = fault.map(|fault| ScheduledFault { fault, time: BEGINS });
         let (robot, nature) = made(pace);
         let mut watched = Watched::new(Faulty::new(robot, faults.as_slice()).unwrap(), happening, nature, &child);
         let served = serve(&mut watched, &port, pace, &|| child.borrow_mut().try_wait().unwrap().is_none());
@@ -165,7 +165,7 @@ fn cases<R: Emulated + 'static>(
         ("another robot is there".to_owned(), Box::new(move || on_another(robot))),
     ];
     for (kind, what) in ON_COMMAND {
-        let At { fault, .. } = kind.parse().unwrap();
+        let ScheduledFault { fault, .. } = kind.parse().unwrap();
         if !matches!(fault, Fault::Body(ailment) if !R::can_suffer(ailment)) {
             let of = move || robot.with(made, IN_LOCKSTEP, Some(fault), Happening::OnCommand).0;
             cases.push((format!("{what} (`{kind}`)"), Box::new(of)));
@@ -205,7 +205,7 @@ pub(crate) fn each_fault_stops_the_robot_or_is_borne() {
         assert!(is_over || row.status == Some(3) && is_one_sentence || row.status.is_none(), "{what}: {row:?}");
         // If the robot could receive a command, the last command was one to stop.
         let is_cut = ["deaf", "close", "killed", "dies in mid-frame"].iter().any(|word| what.contains(word));
-        assert!(is_cut || row.order != Some(Order::Drive), "{what}: {row:?}");
+        assert!(is_cut || row.order != Some(MotionOrder::Drive), "{what}: {row:?}");
     }
     let text = page::text(PLAN, &[("The Super Scout", of_scout), ("The ATRV-mini", of_atrv)]);
     let path = root().join("docs/src/faults.md");

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::process::Output;
 
-use mdle_emulator::Order;
+use mdle_emulator::MotionOrder;
 
 use super::watched::Way;
 
@@ -15,13 +15,13 @@ pub(crate) struct Row {
     pub(crate) status: Option<i32>,
     pub(crate) way: Way,
     /// Last order that the robot received.
-    pub(crate) order: Option<Order>,
+    pub(crate) order: Option<MotionOrder>,
 }
 
 impl Row {
     /// Returns the row for an executable with this output, after whose fault the body moved by `way`. `order` is the
     /// last order that the robot received.
-    pub(crate) fn of(output: Output, way: Way, order: Option<Order>) -> Self {
+    pub(crate) fn of(output: Output, way: Way, order: Option<MotionOrder>) -> Self {
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         let message = match err.strip_prefix("error: ") {
             Some(error) => error.trim_end().to_owned(),
@@ -71,10 +71,10 @@ pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String 
             let status = status.map_or("killed".to_owned(), |status| status.to_string());
             let order = match order {
                 None => "nothing",
-                Some(Order::Drive) => "to drive",
-                Some(Order::Stand) => "to stand",
-                Some(Order::LetGo) => "to let go",
-                Some(Order::Brake) => "to brake",
+                Some(MotionOrder::Drive) => "to drive",
+                Some(MotionOrder::Stand) => "to stand",
+                Some(MotionOrder::LetGo) => "to let go",
+                Some(MotionOrder::Brake) => "to brake",
             };
             let (centimetres, seconds) = ((way.metres * 100.0).round(), way.time.as_secs_f64());
             writeln!(text, "| {what} | {message} | {status} | {order} | {centimetres} cm | {seconds:.1} s |").unwrap();

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::process::Child;
 use std::time::{Duration, Instant};
 
-use mdle_emulator::{Ailment, Emulated, Faulty, Order, Orders};
+use mdle_emulator::{Ailment, Emulated, Faulty, MotionOrder, OrderLog};
 use mdle_runtime::Pose;
 
 use super::PERIOD;
@@ -53,7 +53,7 @@ pub(crate) struct Nature<R> {
     /// Returns the true pose of the robot.
     pub(crate) pose: fn(&R) -> Pose,
     /// Returns the orders that have reached the robot.
-    pub(crate) orders: fn(&R) -> &Orders,
+    pub(crate) orders: fn(&R) -> &OrderLog,
     /// Changes a frame of the robot into an answer to another command.
     pub(crate) wrong: fn(&[u8]) -> Vec<u8>,
     /// Number of additional periods for which the robot moves while a driver waits without an answer. In lockstep, the
@@ -102,7 +102,7 @@ impl<'a, R: Emulated> Watched<'a, R> {
     }
 
     /// Returns the last order that the robot received.
-    pub(crate) fn order(&self) -> Option<Order> {
+    pub(crate) fn order(&self) -> Option<MotionOrder> {
         (self.nature.orders)(self.robot.robot()).last().map(|(_, order)| order)
     }
 

@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, Once};
 use std::time::{Duration, Instant};
 
 use mdle_atrv_emulator::atrv::{Atrv, step};
-use mdle_emulator::{Ailment, Emulated, Order, Orders, Pace, Port, serve};
+use mdle_emulator::{Ailment, Emulated, MotionOrder, OrderLog, Pace, Port, serve};
 use mdle_runtime::Pose;
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
@@ -28,7 +28,7 @@ pub(crate) trait Robot: Emulated + Sized {
 
     fn new(pace: Pace) -> Self;
     fn pose(&self) -> Pose;
-    fn orders(&self) -> &Orders;
+    fn orders(&self) -> &OrderLog;
     /// Returns `true` if the robot is in the correct state after a run that was stopped. `bytes` contains all bytes
     /// that the robot has received.
     fn is_secured(&self, bytes: &[u8]) -> bool;
@@ -50,7 +50,7 @@ impl Robot for Scout {
         self.pose()
     }
 
-    fn orders(&self) -> &Orders {
+    fn orders(&self) -> &OrderLog {
         self.orders()
     }
 
@@ -75,7 +75,7 @@ impl Robot for Atrv {
         self.pose()
     }
 
-    fn orders(&self) -> &Orders {
+    fn orders(&self) -> &OrderLog {
         self.orders()
     }
 
@@ -244,5 +244,5 @@ pub(crate) fn ran_by<R: Robot>(
 
 /// Returns `true` if the robot was commanded to drive.
 pub(crate) fn drove<R: Robot>(robot: &R) -> bool {
-    robot.orders().iter().any(|(_, order)| order == Order::Drive)
+    robot.orders().iter().any(|(_, order)| order == MotionOrder::Drive)
 }

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use std::{fs, thread};
 
 use mdle_atrv_emulator::atrv::Atrv;
-use mdle_emulator::{Order, Orders};
+use mdle_emulator::{MotionOrder, OrderLog};
 use mdle_scout_emulator::scout::Scout;
 use rustix::process::{Pid, Signal, kill_process};
 
@@ -50,8 +50,8 @@ fn both(scout: impl FnOnce() -> Ran<Scout> + Send, atrv: impl FnOnce() -> Ran<At
 
 fn a_robot_without_a_fault_ends_as_the_plan_says() {
     let (scout, atrv) = both(|| alone(&[]), || alone(&[]));
-    scout.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
-    atrv.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::Brake]);
+    scout.assert(0, &["plan over"], &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::LetGo]);
+    atrv.assert(0, &["plan over"], &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::Brake]);
     assert!(scout.robot.stands() && atrv.robot.stands() && atrv.robot.is_braked());
 }
 
@@ -62,22 +62,22 @@ fn an_atrv_that_receives_nothing_ends_the_plan() {
         let drives_on = scope.spawn(|| ran::<Atrv>(&["deaf", "runaway"], &[], Way::Tcp, |_, _| {}));
         (alone::<Atrv>(&["deaf"]), drives_on.join().unwrap())
     });
-    ran_out.assert(3, &["may not have stopped", "does not receive"], &[Order::Drive]);
+    ran_out.assert(3, &["may not have stopped", "does not receive"], &[MotionOrder::Drive]);
     assert!(ran_out.robot.stands() && !ran_out.robot.is_braked());
-    drives_on.assert(3, &["may not have stopped", "does not"], &[Order::Drive]);
+    drives_on.assert(3, &["may not have stopped", "does not"], &[MotionOrder::Drive]);
     assert!(!drives_on.robot.stands());
 }
 
 fn an_atrv_that_is_not_braked_is_reported() {
     // The run ends before the unanswered question counts as a fault; meanwhile the robot stops by itself.
     let ran = ran::<Atrv>(&["deaf"], &["--timeout", "3.6"], Way::Terminal, |_, _| {});
-    ran.assert(3, &["--timeout", "may not have stopped", "does not receive"], &[Order::Drive]);
+    ran.assert(3, &["--timeout", "may not have stopped", "does not receive"], &[MotionOrder::Drive]);
     assert!(ran.robot.stands() && !ran.robot.is_braked());
 }
 
 fn a_scout_that_receives_nothing_ends_the_plan() {
     let ran = alone::<Scout>(&["deaf"]);
-    ran.assert(3, &["may not have stopped", "does not answer"], &[Order::Drive]);
+    ran.assert(3, &["may not have stopped", "does not answer"], &[MotionOrder::Drive]);
     // The robot's own watchdog stops it.
     assert!(ran.robot.stands());
 }
@@ -85,8 +85,8 @@ fn a_scout_that_receives_nothing_ends_the_plan() {
 fn a_robot_that_does_not_obey_ends_the_plan() {
     let message = ["may not have stopped", "does not obey"];
     let (scout, atrv) = both(|| alone(&["runaway"]), || alone(&["runaway"]));
-    scout.assert(3, &message, &[Order::Drive, Order::Stand, Order::LetGo]);
-    atrv.assert(3, &message, &[Order::Drive, Order::Stand, Order::Brake]);
+    scout.assert(3, &message, &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::LetGo]);
+    atrv.assert(3, &message, &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::Brake]);
 }
 
 fn a_stop_without_rest_is_reported() {
@@ -97,8 +97,8 @@ fn a_stop_without_rest_is_reported() {
         || ran(&["runaway"], &arguments, Way::Terminal, |_, _| {}),
     );
     let message = ["--timeout", "still moved", "may not have stopped"];
-    scout.assert(3, &message, &[Order::Drive, Order::Stand, Order::LetGo]);
-    atrv.assert(3, &message, &[Order::Drive, Order::Stand, Order::Brake]);
+    scout.assert(3, &message, &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::LetGo]);
+    atrv.assert(3, &message, &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::Brake]);
 }
 
 fn each_kind_of_report_of_an_atrv_that_stops_ends_the_plan() {
@@ -114,7 +114,7 @@ fn each_kind_of_report_of_an_atrv_that_stops_ends_the_plan() {
         for (fault, words) in kinds {
             scope.spawn(move || {
                 let ran = alone::<Atrv>(&[fault]);
-                ran.assert(3, &[words], &[Order::Drive, Order::Stand, Order::Brake]);
+                ran.assert(3, &[words], &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::Brake]);
                 assert!(ran.robot.stands() && ran.robot.is_braked(), "{fault}");
             });
         }
@@ -127,15 +127,19 @@ fn a_scout_that_answers_late_ends_as_the_plan_says() {
     fs::write(&file, "answer = 400\nwatchdog = 5\n").unwrap();
     let arguments = ["--period", "0.5", "--config", file.to_str().unwrap()];
     let ran = ran::<Scout>(&["late=200"], &arguments, Way::Tcp, |_, _| {});
-    ran.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
+    ran.assert(0, &["plan over"], &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::LetGo]);
     assert!(ran.robot.stands());
 }
 
 fn an_atrv_that_falls_silent_stands_before_it_is_braked() {
     let ran = alone::<Atrv>(&["silence"]);
-    ran.assert(3, &["may not have stopped", "does not answer"], &[Order::Drive, Order::Stand, Order::Brake]);
+    ran.assert(
+        3,
+        &["may not have stopped", "does not answer"],
+        &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::Brake],
+    );
     let orders: Vec<_> = ran.robot.orders().iter().collect();
-    let drove = orders.iter().rposition(|(_, order)| *order == Order::Drive).unwrap();
+    let drove = orders.iter().rposition(|(_, order)| *order == MotionOrder::Drive).unwrap();
     let (first, last) = (orders[drove + 1], orders[orders.len() - 1]);
     assert!(last.0 - first.0 >= Duration::from_millis(700), "{first:?} {last:?}");
 }
@@ -143,11 +147,11 @@ fn an_atrv_that_falls_silent_stands_before_it_is_braked() {
 fn a_robot_that_only_receives_stands_before_it_is_let_go() {
     let (scout, atrv) =
         both(|| ran(&[], &[], Way::HalfClosed, |_, _| {}), || ran(&[], &[], Way::HalfClosed, |_, _| {}));
-    atrv.assert(3, &["may not have stopped", "cut"], &[Order::Drive, Order::Stand, Order::Brake]);
-    scout.assert(3, &["may not have stopped", "cut"], &[Order::Drive, Order::Stand, Order::LetGo]);
+    atrv.assert(3, &["may not have stopped", "cut"], &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::Brake]);
+    scout.assert(3, &["may not have stopped", "cut"], &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::LetGo]);
     for orders in [atrv.robot.orders(), scout.robot.orders()] {
         let orders: Vec<_> = orders.iter().collect();
-        let drove = orders.iter().rposition(|(_, order)| *order == Order::Drive).unwrap();
+        let drove = orders.iter().rposition(|(_, order)| *order == MotionOrder::Drive).unwrap();
         let (first, last) = (orders[drove + 1], orders[orders.len() - 1]);
         assert!(last.0 - first.0 >= Duration::from_millis(400), "{first:?} {last:?}");
     }
@@ -155,7 +159,7 @@ fn a_robot_that_only_receives_stands_before_it_is_let_go() {
 
 fn noise_on_the_line_of_a_scout_is_borne() {
     let ran = alone::<Scout>(&["noise=40"]);
-    ran.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
+    ran.assert(0, &["plan over"], &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::LetGo]);
 }
 
 /// Suspends the program for longer than the timeout of any watchdog, and then continues it.
@@ -169,10 +173,10 @@ fn suspended(child: &Child, begun: Instant) {
 
 fn a_robot_is_not_driven_off_after_a_suspension() {
     let (scout, atrv) = both(|| ran(&[], &[], Way::Terminal, suspended), || ran(&[], &[], Way::Terminal, suspended));
-    scout.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::LetGo]);
-    atrv.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::Brake]);
+    scout.assert(3, &["a fault stopped the robot"], &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::LetGo]);
+    atrv.assert(3, &["a fault stopped the robot"], &[MotionOrder::Drive, MotionOrder::Stand, MotionOrder::Brake]);
     // The last order to drive came before the suspension.
-    let drove = |orders: &Orders| orders.iter().rfind(|(_, order)| *order == Order::Drive).unwrap().0;
+    let drove = |orders: &OrderLog| orders.iter().rfind(|(_, order)| *order == MotionOrder::Drive).unwrap().0;
     for last in [drove(scout.robot.orders()), drove(atrv.robot.orders())] {
         assert!(last < BEGINS + Duration::from_secs(3), "{last:?}");
     }

@@ -12,7 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use mdle_atrv_emulator::atrv::{Atrv, step};
-use mdle_emulator::{At, Emulated, Faulty, Order, Orders, Pace, Port, serve};
+use mdle_emulator::{Emulated, Faulty, MotionOrder, OrderLog, Pace, Port, ScheduledFault, serve};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
@@ -32,7 +32,7 @@ pub(crate) trait Robot: Emulated + Send + Sized {
     const TARGET: &'static str;
 
     fn new() -> Self;
-    fn orders(&self) -> &Orders;
+    fn orders(&self) -> &OrderLog;
     fn stands(&self) -> bool;
 }
 
@@ -48,7 +48,7 @@ impl Robot for Scout {
         Self::new(body(Body::Scout, Pace::Real.step())).unwrap()
     }
 
-    fn orders(&self) -> &Orders {
+    fn orders(&self) -> &OrderLog {
         self.orders()
     }
 
@@ -64,7 +64,7 @@ impl Robot for Atrv {
         Self::new(body(Body::Atrv, step(Pace::Real)), step(Pace::Real), false).unwrap()
     }
 
-    fn orders(&self) -> &Orders {
+    fn orders(&self) -> &OrderLog {
         self.orders()
     }
 
@@ -97,15 +97,15 @@ pub(crate) struct Ran<R> {
 
 impl<R: Robot> Ran<R> {
     /// Returns the orders that the robot received, without consecutive repetitions.
-    fn last_orders(&self) -> Vec<Order> {
-        let mut orders: Vec<Order> = self.robot.orders().iter().map(|(_, order)| order).collect();
+    fn last_orders(&self) -> Vec<MotionOrder> {
+        let mut orders: Vec<MotionOrder> = self.robot.orders().iter().map(|(_, order)| order).collect();
         orders.dedup();
         orders
     }
 
     /// Asserts that the run ended with this exit status, that its output contains these words, and that the robot
     /// received these orders last.
-    pub(crate) fn assert(&self, status: i32, words: &[&str], orders: &[Order]) {
+    pub(crate) fn assert(&self, status: i32, words: &[&str], orders: &[MotionOrder]) {
         println!("{} s after the fault: {}", self.took.as_secs_f64(), self.output);
         assert_eq!(self.status, Some(status), "{}", self.output);
         assert!(words.iter().all(|word| self.output.contains(word)), "{}", self.output);
@@ -123,7 +123,7 @@ pub(crate) fn ran<R: Robot>(
     meanwhile: impl FnOnce(&Child, Instant),
 ) -> Ran<R> {
     let at = |fault: &&str| format!("{fault}@{}", BEGINS.as_secs_f64()).parse().unwrap();
-    let faults: Vec<At> = faults.iter().map(at).collect();
+    let faults: Vec<ScheduledFault> = faults.iter().map(at).collect();
     let mut robot = Faulty::new(R::new(), &faults).unwrap();
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let executable = executable::<R>();

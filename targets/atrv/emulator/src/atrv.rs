@@ -4,7 +4,7 @@ mod reports;
 
 use std::time::Duration;
 
-use mdle_emulator::{Ailment, Embodied, Emulated, Order, Orders, Pace, STEP};
+use mdle_emulator::{Ailment, Embodied, Emulated, MotionOrder, OrderLog, Pace, STEP};
 use mdle_runtime::{MetersPerSecond, Nanos, Pose, RadiansPerSecond, Robot as _, Twist};
 use mdle_simulator::{Footprint, Output, Simulated};
 
@@ -47,7 +47,7 @@ pub struct Atrv {
     /// received.
     command: (i32, i32),
     last_command: (i32, i32),
-    orders: Orders,
+    orders: OrderLog,
     /// Positions of both axes, in the controller's units.
     gone: (f64, f64),
     axes: Schedule,
@@ -85,7 +85,7 @@ impl Atrv {
             count: 0,
             command: (0, 0),
             last_command: (0, 0),
-            orders: Orders::default(),
+            orders: OrderLog::default(),
             gone: (0.0, 0.0),
             axes: Schedule::default(),
             inputs: Schedule::default(),
@@ -120,7 +120,7 @@ impl Atrv {
 
     /// Returns the motion commands that the robot has received.
     #[must_use]
-    pub fn orders(&self) -> &Orders {
+    pub fn orders(&self) -> &OrderLog {
         &self.orders
     }
 
@@ -145,7 +145,7 @@ impl Atrv {
                 return *axis == 1;
             }
             (2, 11, _) => {
-                self.orders.push(self.age, Order::Brake);
+                self.orders.push(self.age, MotionOrder::Brake);
                 if !self.has(Ailment::Runaway) {
                     (self.command, self.is_braked) = ((0, 0), true);
                 }
@@ -177,7 +177,7 @@ impl Atrv {
                 self.last_command.1 = velocity;
                 // Drivers send 1 unit in place of 0.
                 let stands = self.last_command.0.abs() <= 1 && velocity == 0;
-                self.orders.push(self.age, if stands { Order::Stand } else { Order::Drive });
+                self.orders.push(self.age, if stands { MotionOrder::Stand } else { MotionOrder::Drive });
             }
         }
         match axis {

@@ -54,9 +54,9 @@ impl Incoming {
             };
             self.bytes.drain(..begin);
             let (body, used) = match self.body() {
-                Body::Open => return None,
-                Body::Lost(used) => (None, used),
-                Body::Whole(body, used) => (Some(body), used),
+                CommandBody::Open => return None,
+                CommandBody::Lost(used) => (None, used),
+                CommandBody::Whole(body, used) => (Some(body), used),
             };
             self.bytes.drain(..used);
             if let Some([port, _, code, size, rest @ ..]) = body.as_deref()
@@ -70,33 +70,33 @@ impl Incoming {
     }
 
     /// Returns the bytes between the start mark and the end mark of the first command in the buffer.
-    fn body(&self) -> Body {
+    fn body(&self) -> CommandBody {
         let mut body = Vec::new();
         let mut at = 2;
         loop {
             match (self.bytes.get(at), self.bytes.get(at + 1)) {
-                (None, _) | (Some(0x1B), None) => return Body::Open,
-                (Some(0x1B), Some(0x03)) => return Body::Whole(body, at + 2),
-                (Some(0x1B), Some(0x02)) => return Body::Lost(at),
+                (None, _) | (Some(0x1B), None) => return CommandBody::Open,
+                (Some(0x1B), Some(0x03)) => return CommandBody::Whole(body, at + 2),
+                (Some(0x1B), Some(0x02)) => return CommandBody::Lost(at),
                 (Some(0x1B), Some(0x01)) => at += 2,
                 (Some(0x1B), Some(0x00)) if self.marks => {
                     body.push(0x1B);
                     at += 2;
                 }
-                (Some(0x1B), Some(_)) => return Body::Lost(at + 1),
+                (Some(0x1B), Some(_)) => return CommandBody::Lost(at + 1),
                 (Some(byte), _) => {
                     body.push(*byte);
                     at += 1;
                 }
             }
             if body.len() > 260 || at > LONGEST {
-                return Body::Lost(at);
+                return CommandBody::Lost(at);
             }
         }
     }
 }
 
-enum Body {
+enum CommandBody {
     /// The command is not complete yet.
     Open,
     /// This number of bytes at the beginning of the buffer does not belong to a command.

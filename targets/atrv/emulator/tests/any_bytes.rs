@@ -3,7 +3,7 @@
 #![allow(clippy::panic, clippy::indexing_slicing, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the seed is seen where a test fails")]
 
-use mdle_atrv::{Axis, Command, Escape, Motion, Packet, Reader, Report};
+use mdle_atrv::{Axis, AxisMotion, Command, Escape, Packet, Reader, Report};
 use mdle_atrv_emulator::wire::{Incoming, report};
 use proptest::collection::vec;
 use proptest::prelude::{Just, ProptestConfig, Strategy, any, prop_oneof, proptest};
@@ -66,7 +66,7 @@ proptest! {
     #[test]
     fn behind_any_bytes_a_command_is_read(noise in bytes(), axis: bool, velocity: i32, acceleration: u32, torque: u32) {
         let axis = if axis { Axis::Rotation } else { Axis::Translation };
-        let command = Command::Move(axis, Motion { velocity, acceleration, torque });
+        let command = Command::Move(axis, AxisMotion { velocity, acceleration, torque });
         for (escape, marks) in [(Escape::Mark, true), (Escape::Avoid, false)] {
             let mut incoming = Incoming::new(marks);
             requests(&mut incoming, &ended(&noise));

@@ -6,10 +6,10 @@ use std::time::Duration;
 use mdle_atrv::{Atrv, alphabet};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
 use mdle_conformance::Suite;
-use mdle_emulator::Motion::{Braked, Moves, Still};
-use mdle_emulator::Order::{Brake, Drive, Stand};
+use mdle_emulator::MotionOrder::{Brake, Drive, Stand};
 use mdle_emulator::Speed::{Ahead, Halts, Rests};
-use mdle_emulator::{Effect, Motion, OnItsLine, Orders, Pace, Trial, memory_asked_for, untrue_effects};
+use mdle_emulator::WheelMotion::{Braked, Moves, Still};
+use mdle_emulator::{Effect, OnItsLine, OrderLog, Pace, Trial, WheelMotion, memory_asked_for, untrue_effects};
 use mdle_runtime::Pose;
 use mdle_simulator::{Body, Simulated};
 
@@ -37,7 +37,7 @@ impl Trial for Robot {
         robot.pose()
     }
 
-    fn motion(robot: &Emulated) -> Motion {
+    fn motion(robot: &Emulated) -> WheelMotion {
         match (robot.velocity().v.0 == 0.0, robot.is_braked()) {
             (false, _) => Moves,
             (true, false) => Still,
@@ -45,7 +45,7 @@ impl Trial for Robot {
         }
     }
 
-    fn orders(robot: &Emulated) -> &Orders {
+    fn orders(robot: &Emulated) -> &OrderLog {
         robot.orders()
     }
 }

@@ -24,7 +24,7 @@ impl Robot {
     }
 
     /// Passes a message of a topic to the robot's sensing.
-    fn take<T: Serialize>(&mut self, source: Source, message: &T) -> Result<(), Fault> {
+    fn take<T: Serialize>(&mut self, source: TopicPurpose, message: &T) -> Result<(), Fault> {
         let index = self.sensing.inputs().position(|input| input.source == source).unwrap();
         let (now, at) = (Duration::from_millis(self.now), Nanos(self.now * 1_000_000));
         self.sensing.take(index, &Payload::of(message).unwrap(), now, at)
@@ -36,14 +36,14 @@ impl Robot {
         message.header.stamp = Time::of(1_000_000_000 + self.now as i64 * 1_000_000);
         message.pose.pose.position.x = x;
         message.pose.pose.orientation.w = 1.0;
-        self.take(Source::Odometry, &message)
+        self.take(TopicPurpose::Odometry, &message)
     }
 
     /// Passes a scan whose rays all have this range.
     fn scan(&mut self, range: f32) -> Result<(), Fault> {
         let (angle_min, angle_increment, range_max) = (-PI as f32, (PI / 180.0) as f32, 10.0);
         let ranges = vec![range; 360];
-        self.take(Source::Scan, &LaserScan { angle_min, angle_increment, range_max, ranges, ..LaserScan::default() })
+        self.take(TopicPurpose::Scan, &LaserScan { angle_min, angle_increment, range_max, ranges, ..LaserScan::default() })
     }
 
     fn sensed(&self) -> Sensed {
@@ -97,7 +97,7 @@ fn messages_that_cannot_be_read_make_a_topic_stale() {
     robot.scan(f32::NAN).unwrap();
     let Err(Fault::Stale { topic, why, .. }) = robot.check() else { panic!("a fault") };
     assert_eq!((&*topic, &*why), ("/scan", "none of its 360 rays is valid"));
-    robot.take(Source::Scan, &Bool { data: true }).unwrap();
+    robot.take(TopicPurpose::Scan, &Bool { data: true }).unwrap();
     assert!(matches!(robot.check(), Err(Fault::Stale { why, .. }) if why.starts_with("1 bytes that cannot")));
 }
 
@@ -111,7 +111,7 @@ fn a_direction_that_is_lost_is_forgotten() {
         ranges[160..200].fill(f32::NAN);
         let (angle_min, angle_increment, range_max) = (-PI as f32, (PI / 180.0) as f32, 10.0);
         let scan = LaserScan { angle_min, angle_increment, range_max, ranges, ..LaserScan::default() };
-        robot.take(Source::Scan, &scan).unwrap();
+        robot.take(TopicPurpose::Scan, &scan).unwrap();
         robot.sensed().pings[0].newest_first().count()
     };
     robot.now = 900;
@@ -135,18 +135,18 @@ fn range_sensors_have_the_layout_of_their_distribution() {
     let old = |range| ShortRange { min_range: 0.1, max_range: 4.0, range, ..ShortRange::default() };
     let mut humble = robot(Distribution::Humble);
     for (range, expected) in [(1.0, Some(0.9)), (5.0, None), (f32::INFINITY, None)] {
-        humble.take(Source::Range(0), &old(range)).unwrap();
+        humble.take(TopicPurpose::Range(0), &old(range)).unwrap();
         let heard = humble.sensed().pings[4].newest_first().next().unwrap().range;
         assert_eq!(heard.map(|range| (range.0 * 10.0).round() / 10.0), expected);
     }
     let count = |robot: &Robot| robot.sensed().pings[4].newest_first().count();
-    humble.take(Source::Range(0), &old(f32::NAN)).unwrap();
-    humble.take(Source::Range(0), &Range::from(old(1.0))).unwrap();
+    humble.take(TopicPurpose::Range(0), &old(f32::NAN)).unwrap();
+    humble.take(TopicPurpose::Range(0), &Range::from(old(1.0))).unwrap();
     assert_eq!(count(&humble), 3);
     let mut jazzy = robot(Distribution::Jazzy);
-    jazzy.take(Source::Range(0), &old(1.0)).unwrap();
+    jazzy.take(TopicPurpose::Range(0), &old(1.0)).unwrap();
     assert_eq!(count(&jazzy), 0);
-    jazzy.take(Source::Range(0), &Range::from(old(1.0))).unwrap();
+    jazzy.take(TopicPurpose::Range(0), &Range::from(old(1.0))).unwrap();
     assert_eq!(count(&jazzy), 1);
 }
 
@@ -159,8 +159,8 @@ fn a_bumper_and_a_battery_may_report_changes_only() {
     robot.odometry(0.0).unwrap();
     robot.scan(2.0).unwrap();
     assert_eq!(robot.sensing.awaited().count(), 0);
-    robot.take(Source::Bumper, &Bool { data: true }).unwrap();
-    robot.take(Source::Battery, &BatteryState { voltage: 12.0, ..BatteryState::default() }).unwrap();
+    robot.take(TopicPurpose::Bumper, &Bool { data: true }).unwrap();
+    robot.take(TopicPurpose::Battery, &BatteryState { voltage: 12.0, ..BatteryState::default() }).unwrap();
     assert_eq!((robot.sensed().switches, robot.sensed().supply.battery), (1, Volts(12.0)));
     assert_eq!(robot.check(), Ok(()));
 }
@@ -183,12 +183,12 @@ fn a_scan_that_is_blind_ahead_is_no_bumper() {
     ranges[140..220].fill(f32::NAN);
     let (angle_min, angle_increment, range_max) = (-PI as f32, (PI / 180.0) as f32, 10.0);
     let mut scan = LaserScan { angle_min, angle_increment, range_max, ranges, ..LaserScan::default() };
-    robot.take(Source::Scan, &scan).unwrap();
+    robot.take(TopicPurpose::Scan, &scan).unwrap();
     let why = "as a bumper (`bumper-type = \"scan\"`) the scan has to look ahead: none of its rays ahead is valid";
     let rejected = |robot: &Robot| robot.sensing.awaited().map(|(_, why)| why.to_owned()).next();
     assert_eq!(rejected(&robot).as_deref(), Some(why));
     scan.ranges[180] = 2.0;
-    robot.take(Source::Scan, &scan).unwrap();
+    robot.take(TopicPurpose::Scan, &scan).unwrap();
     assert_eq!(rejected(&robot), None);
 }
 
@@ -197,16 +197,16 @@ fn messages_before_the_first_clock_are_not_stale() {
     let mut robot = Robot::new(|config| config.use_sim_time = true);
     robot.odometry(0.0).unwrap();
     robot.scan(2.0).unwrap();
-    robot.take(Source::Clock, &ClockMessage { clock: Time::of(1_700_000_000_000_000_000) }).unwrap();
+    robot.take(TopicPurpose::Clock, &ClockMessage { clock: Time::of(1_700_000_000_000_000_000) }).unwrap();
     assert_eq!(robot.sensing.check(robot.sensing.simulated()), Ok(()));
-    robot.take(Source::Clock, &ClockMessage { clock: Time::of(1_700_000_000_600_000_000) }).unwrap();
+    robot.take(TopicPurpose::Clock, &ClockMessage { clock: Time::of(1_700_000_000_600_000_000) }).unwrap();
     assert!(robot.sensing.check(robot.sensing.simulated()).is_err());
 }
 
 #[test]
 fn messages_that_come_at_once_with_the_first_clock_are_not_stale() {
     let mut robot = Robot::new(|config| config.use_sim_time = true);
-    robot.take(Source::Clock, &ClockMessage { clock: Time::of(1_000_000_000_000) }).unwrap();
+    robot.take(TopicPurpose::Clock, &ClockMessage { clock: Time::of(1_000_000_000_000) }).unwrap();
     robot.odometry(0.0).unwrap();
     robot.scan(2.0).unwrap();
     assert_eq!(robot.sensing.check(robot.sensing.simulated()), Ok(()));

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mdle_emulator::{Ailment, Embodied, Emulated, Order, Orders};
+use mdle_emulator::{Ailment, Embodied, Emulated, MotionOrder, OrderLog};
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist, Volts};
 use mdle_simulator::{Footprint, Output, Simulated};
@@ -64,7 +64,7 @@ pub struct Scout {
     off: i64,
     /// `true` while the offset grows.
     leaps: bool,
-    orders: Orders,
+    orders: OrderLog,
 }
 
 impl Scout {
@@ -100,7 +100,7 @@ impl Scout {
             runaway: None,
             off: 0,
             leaps: false,
-            orders: Orders::default(),
+            orders: OrderLog::default(),
         };
         scout.listen();
         Ok(scout)
@@ -114,7 +114,7 @@ impl Scout {
 
     /// Returns the motion commands that the robot has received.
     #[must_use]
-    pub fn orders(&self) -> &Orders {
+    pub fn orders(&self) -> &OrderLog {
         &self.orders
     }
 
@@ -127,9 +127,9 @@ impl Scout {
     /// Records `request` as an order if it is a motion command.
     fn note(&mut self, request: &Request) {
         let order = match (request.command, &*request.data) {
-            (5, [r0, r1, l0, l1, ..]) if (number(*r0, *r1), number(*l0, *l1)) != (0, 0) => Order::Drive,
-            (5 | 9, _) => Order::Stand,
-            (10, _) => Order::LetGo,
+            (5, [r0, r1, l0, l1, ..]) if (number(*r0, *r1), number(*l0, *l1)) != (0, 0) => MotionOrder::Drive,
+            (5 | 9, _) => MotionOrder::Stand,
+            (10, _) => MotionOrder::LetGo,
             _ => return,
         };
         self.orders.push(self.age, order);

@@ -4,7 +4,7 @@
 use std::thread;
 use std::time::Duration;
 
-use mdle_emulator::{Driven, Faulty, Order, Pace, driven};
+use mdle_emulator::{Driven, Faulty, MotionOrder, Pace, driven};
 use mdle_host::StopRequest;
 use mdle_runtime::{MetersPerSecond, Robot as _, Twist};
 use mdle_scout::{Clock, Config, Configured, Fault, Scout};
@@ -39,7 +39,7 @@ fn a_robot_that_answers_late_is_stopped_in_good_order() {
     });
     let robot = robot.robot();
     assert_eq!((stop, robot.stands()), (Ok(()), true));
-    assert_eq!(robot.orders().last().unwrap().1, Order::LetGo);
+    assert_eq!(robot.orders().last().unwrap().1, MotionOrder::LetGo);
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn a_command_after_the_robot_has_stopped_itself_is_not_sent() {
     });
     let [too_late, stop] = results;
     assert!(too_late.is_err_and(|fault: Fault| fault.to_string().contains("stopped itself")));
-    let orders: Vec<Order> = robot.robot().orders().iter().map(|(_, order)| order).collect();
-    assert_eq!(orders.iter().filter(|order| **order == Order::Drive).count(), 1, "{orders:?}");
+    let orders: Vec<MotionOrder> = robot.robot().orders().iter().map(|(_, order)| order).collect();
+    assert_eq!(orders.iter().filter(|order| **order == MotionOrder::Drive).count(), 1, "{orders:?}");
     assert_eq!((stop, robot.robot().stands()), (Ok(()), true));
 }

@@ -4,10 +4,10 @@
 use std::time::Duration;
 
 use mdle_conformance::Suite;
-use mdle_emulator::Motion::{Moves, Still};
-use mdle_emulator::Order::{Drive, LetGo, Stand};
+use mdle_emulator::MotionOrder::{Drive, LetGo, Stand};
 use mdle_emulator::Speed::{Ahead, Halts};
-use mdle_emulator::{Effect, Motion, OnItsLine, Orders, Trial, memory_asked_for, untrue_effects};
+use mdle_emulator::WheelMotion::{Moves, Still};
+use mdle_emulator::{Effect, OnItsLine, OrderLog, Trial, WheelMotion, memory_asked_for, untrue_effects};
 use mdle_runtime::Pose;
 use mdle_scout::{Scout, alphabet};
 use mdle_scout_emulator::scout::Scout as Emulated;
@@ -33,11 +33,11 @@ impl Trial for Robot {
         robot.pose()
     }
 
-    fn motion(robot: &Emulated) -> Motion {
+    fn motion(robot: &Emulated) -> WheelMotion {
         if robot.stands() { Still } else { Moves }
     }
 
-    fn orders(robot: &Emulated) -> &Orders {
+    fn orders(robot: &Emulated) -> &OrderLog {
         robot.orders()
     }
 }

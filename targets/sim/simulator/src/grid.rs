@@ -165,8 +165,8 @@ impl Grid {
         let (entered, left) = self.crossed(from, way, most)?;
         let at = Point { x: from.x + entered * way.x, y: from.y + entered * way.y };
         let (mut column, mut row) = (self.column(at.x), self.row(at.y));
-        let mut across = Axis::of(from.x - self.least.x, way.x, column, self.cell);
-        let mut up = Axis::of(from.y - self.least.y, way.y, row, self.cell);
+        let mut across = RayAxis::of(from.x - self.least.x, way.x, column, self.cell);
+        let mut up = RayAxis::of(from.y - self.least.y, way.y, row, self.cell);
         let mut best = Hit { range: most, segment: usize::MAX };
         loop {
             for (segment, number) in self.entries(column, row) {
@@ -241,7 +241,7 @@ impl Grid {
 }
 
 /// State of a ray along one axis of the grid.
-struct Axis {
+struct RayAxis {
     /// Distance along the ray to the next cell border.
     next: f64,
     /// Distance along the ray between two cell borders.
@@ -249,7 +249,7 @@ struct Axis {
     forward: bool,
 }
 
-impl Axis {
+impl RayAxis {
     fn of(from: f64, way: f64, number: usize, cell: f64) -> Self {
         let forward = way > 0.0;
         let border = (number + usize::from(forward)) as f64 * cell;

@@ -142,12 +142,12 @@ pub(crate) struct Hearing {
     pub(crate) outliers: f64,
     /// Groups of transducers that ping together, and the time between two groups; `None` if all transducers ping in
     /// every turn.
-    pub(crate) order: Option<Order>,
+    pub(crate) order: Option<FiringOrder>,
 }
 
 /// Firing order: groups of transducers that ping together, one group after another.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Order {
+pub(crate) struct FiringOrder {
     pub(crate) groups: Vec<Vec<usize>>,
     pub(crate) gap: Nanos,
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, Radians, SONARS};
 
-use crate::model::{Hearing, Order, Transducer};
+use crate::model::{FiringOrder, Hearing, Transducer};
 use crate::noise::{Noise, Purpose};
 use crate::place::Point;
 use crate::walls::Walls;
@@ -21,7 +21,7 @@ pub(crate) struct Ring {
     pub(crate) hearing: Arc<Hearing>,
     /// Latest ping of each transducer, with the range measured from the transducer itself.
     pub(crate) heard: Vec<Heard>,
-    errors: Option<Errors>,
+    errors: Option<SonarErrors>,
     /// Next group to ping, and the time of its ping; not used if all sonars ping in every turn.
     next: (usize, Nanos),
 }
@@ -37,7 +37,7 @@ pub struct Heard {
 
 /// Errors of a run with a random seed.
 #[derive(Debug, Clone)]
-struct Errors {
+struct SonarErrors {
     ranges: Noise,
     outliers: Noise,
     fading: Noise,
@@ -52,7 +52,7 @@ impl Ring {
         let errors = seed.map(|seed| {
             let mut outliers = Noise::of(seed, Purpose::Outliers);
             let scale = 1.0 + hearing.scale * (2.0 * outliers.uniform() - 1.0);
-            Errors {
+            SonarErrors {
                 ranges: Noise::of(seed, Purpose::Ranges),
                 outliers,
                 fading: Noise::of(seed, Purpose::Fading),
@@ -92,7 +92,7 @@ impl Ring {
 
     /// Fires the sonars that are due at `at`, on a robot at `pose` whose odometry reports `odometry`.
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
-        let Some(Order { groups, gap }) = &self.hearing.order else {
+        let Some(FiringOrder { groups, gap }) = &self.hearing.order else {
             for number in 0..self.heard.len() {
                 self.listen(number, pose, at, walls);
             }
@@ -158,7 +158,7 @@ impl Ring {
     }
 }
 
-impl Errors {
+impl SonarErrors {
     /// Returns the measured range for the exact range `exact`; `None` without an echo. Every ping draws the same number
     /// of random numbers, regardless of its result.
     fn of(&mut self, exact: Option<f64>, hearing: &Hearing) -> Option<f64> {

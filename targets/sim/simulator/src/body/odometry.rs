@@ -11,11 +11,11 @@ use crate::place::Point;
 pub(crate) struct Odometry {
     pub(crate) pose: Pose,
     /// Errors of this run; `None` for exact odometry.
-    errors: Option<Errors>,
+    errors: Option<OdometryErrors>,
 }
 
 #[derive(Debug, Clone)]
-struct Errors {
+struct OdometryErrors {
     noise: Noise,
     /// Factor of the measured distance.
     way: f64,
@@ -34,7 +34,7 @@ impl Odometry {
             let way = 1.0 + slip.way * noise.normal();
             let turn = 1.0 + slip.turn * noise.normal();
             let bend = slip.bend * noise.normal();
-            Errors { noise, way, turn, bend, wander: slip.wander }
+            OdometryErrors { noise, way, turn, bend, wander: slip.wander }
         });
         Self { pose: Pose::ORIGIN, errors }
     }

@@ -5,7 +5,7 @@ use mdle_runtime::{Nanos, Radians, SonarId};
 use crate::battery::Pack;
 use crate::footprint::Form;
 
-use super::{Drive, HALF_CONE, Hearing, Model, Order, Slip, Transducer};
+use super::{Drive, FiringOrder, HALF_CONE, Hearing, Model, Slip, Transducer};
 
 const INCH: f64 = 0.0254;
 /// Usual firing order of a Scout's sonars.
@@ -75,7 +75,7 @@ pub(super) fn scout() -> Model {
             fading: 0.1,
             misses: 0.01,
             outliers: 0.005,
-            order: Some(Order {
+            order: Some(FiringOrder {
                 groups: SCOUT_ORDER.iter().map(|number| vec![*number]).collect(),
                 gap: Nanos(60_000_000),
             }),
@@ -137,7 +137,7 @@ pub(super) fn atrv() -> Model {
             // One count of the controller's clock.
             step: 1.0 / 1550.0,
             // All four boards ping at once; each board fires its six sonars one after another, 30 ms apart.
-            order: Some(Order {
+            order: Some(FiringOrder {
                 groups: (0..6).map(|channel| vec![channel, channel + 6, channel + 12, channel + 18]).collect(),
                 gap: Nanos(30_000_000),
             }),

@@ -14,12 +14,12 @@ const DISTANCES: [f64; 6] = [22.0, 36.0, 50.0, 66.0, 84.0, 104.0];
 const APART: f64 = 3.0;
 
 /// A rectangle: from left to right, and from top to bottom.
-pub(super) type Room = ((f64, f64), (f64, f64));
+pub(super) type LabelBox = ((f64, f64), (f64, f64));
 
 /// Returns the positions of the labels of `dots`, in order. A label is inside `room`, and overlaps no dot and no
 /// earlier label. If possible, it also overlaps none of `lines`, which are given by points no farther apart than the
 /// width of a label.
-pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bottom)): Room) -> Vec<Pixel> {
+pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bottom)): LabelBox) -> Vec<Pixel> {
     let mut labels: Vec<Pixel> = Vec::with_capacity(dots.len());
     for dot in dots {
         let clear = |at: &Pixel| {

@@ -1,10 +1,10 @@
 //! The layout of a plot: sizes and positions of its parts, in pixels. Both axes have the same scale.
 
-use super::rows::{self, Row};
+use super::rows::{self, LegendRow};
 use super::shapes::Pixel;
 use super::sizes::{LEFT, LETTER, LETTERS, MARGIN};
 use super::title::Title;
-use super::view::{View, range};
+use super::view::{FloorView, range};
 use crate::place::Point;
 use crate::trail::Trail;
 use crate::world::World;
@@ -30,7 +30,7 @@ const LEGEND_LEAST: f64 = 170.0;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Layout {
     /// Part of the floor that is shown.
-    pub(super) view: View,
+    pub(super) view: FloorView,
     /// Scale, in pixels per metre.
     pub(super) scale: f64,
     pub(super) title: Title,
@@ -42,13 +42,13 @@ pub(super) struct Layout {
     pub(super) legend: f64,
     pub(super) height: f64,
     /// Atoms in the order of the legend.
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<LegendRow>,
 }
 
 impl Layout {
     /// Returns the layout that shows the whole path driven and the floor around it.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
-        let View { x, y } = View::of(world, trail);
+        let FloorView { x, y } = FloorView::of(world, trail);
         let scale = (FLOOR_MOST.0 / (x.1 - x.0)).min(FLOOR_MOST.1 / (y.1 - y.0)).min(SCALE_MOST);
         let (x, wide) = shown(x, scale);
         let (y, high) = shown(y, scale);
@@ -65,12 +65,12 @@ impl Layout {
         // stretching it.
         let more = ((height - top - MARGIN - BELOW) / scale - (y.1 - y.0)) / 2.0;
         let y = (y.0 - more, y.1 + more);
-        Self { view: View { x, y }, scale, title, top, chart, legend, height, rows }
+        Self { view: FloorView { x, y }, scale, title, top, chart, legend, height, rows }
     }
 
     /// Returns the pixel of a place on the floor.
     pub(super) fn at(&self, place: Point) -> Pixel {
-        let View { x, y } = self.view;
+        let FloorView { x, y } = self.view;
         (MARGIN + LEFT + (place.x - x.0) * self.scale, self.top + (y.1 - place.y) * self.scale)
     }
 

@@ -3,7 +3,7 @@
 use mdle_runtime::Printable;
 
 use super::sizes::{LETTER, LETTERS};
-use crate::trail::{Atom, Trail};
+use crate::trail::{Trail, TrailAtom};
 
 /// Maximum number of atoms that are marked and listed.
 pub(super) const ROWS_MOST: usize = 40;
@@ -14,7 +14,7 @@ const APART: f64 = 22.0;
 
 /// An atom in the legend.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Row {
+pub(super) struct LegendRow {
     /// Number of the atom; empty for the line that counts the omitted atoms.
     pub(super) number: String,
     pub(super) law: String,
@@ -25,17 +25,17 @@ pub(super) struct Row {
 }
 
 /// Returns the rows of a run.
-pub(super) fn of(trail: &Trail) -> Vec<Row> {
+pub(super) fn of(trail: &Trail) -> Vec<LegendRow> {
     let ways = &trail.ways;
     let again = ways.atoms.iter().any(|atom| atom.times > 1);
-    let listed = ways.atoms.iter().take(ROWS_MOST).map(|atom| Row {
+    let listed = ways.atoms.iter().take(ROWS_MOST).map(|atom| LegendRow {
         number: atom.number.to_string(),
         law: shortened(&atom.law),
         times: if again { format!("{} ×", atom.times) } else { String::new() },
         total: total(atom),
     });
     let left = ways.atoms.len().saturating_sub(ROWS_MOST).saturating_add(ways.uncounted);
-    let more = (left > 0).then(|| Row {
+    let more = (left > 0).then(|| LegendRow {
         number: String::new(),
         law: format!("and {left} more"),
         times: String::new(),
@@ -44,17 +44,17 @@ pub(super) fn of(trail: &Trail) -> Vec<Row> {
     listed.chain(more).collect()
 }
 
-fn total(atom: &Atom) -> String {
+fn total(atom: &TrailAtom) -> String {
     format!("{:.1} s", atom.total.seconds())
 }
 
 /// Returns the width of the column of total times, including the space before it, in pixels.
-pub(super) fn last_column(rows: &[Row]) -> f64 {
+pub(super) fn last_column(rows: &[LegendRow]) -> f64 {
     column(rows.iter().map(|row| &row.total))
 }
 
 /// Returns the width of both columns of numbers, in pixels.
-pub(super) fn columns(rows: &[Row]) -> f64 {
+pub(super) fn columns(rows: &[LegendRow]) -> f64 {
     last_column(rows) + column(rows.iter().map(|row| &row.times))
 }
 

@@ -12,12 +12,12 @@ const MOST: f64 = 0.5;
 
 /// A rectangle of the floor, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct View {
+pub(super) struct FloorView {
     pub(super) x: (f64, f64),
     pub(super) y: (f64, f64),
 }
 
-impl View {
+impl FloorView {
     /// Returns the view of the path driven with the floor around it, or of the whole world if the world is at most
     /// twice as large.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
@@ -57,23 +57,23 @@ mod tests {
     use crate::footprint::{Footprint, Form};
     use mdle_runtime::{Meters, Pose};
 
-    fn view(world: &str, to: f64) -> View {
+    fn view(world: &str, to: f64) -> FloorView {
         let mut trail = Trail::from(&Footprint { pose: Pose::ORIGIN, form: Form::SCOUT });
         trail.went(&Pose { x: Meters(to), ..Pose::ORIGIN });
-        View::of(&World::parse("a world", world).expect("a good world"), &trail)
+        FloorView::of(&World::parse("a world", world).expect("a good world"), &trail)
     }
 
     #[test]
     fn a_short_way_in_a_large_hall_is_shown_large() {
         let hall = "[[wall]]\npoints = [[-1, -9], [30, -9], [30, 9], [-1, 9]]";
-        assert_eq!(view(hall, 3.0), View { x: (-1.4, 5.0), y: (-2.0, 2.0) });
-        assert_eq!(view(hall, 28.0), View { x: (-1.4, 30.0), y: (-2.0, 2.0) });
+        assert_eq!(view(hall, 3.0), FloorView { x: (-1.4, 5.0), y: (-2.0, 2.0) });
+        assert_eq!(view(hall, 28.0), FloorView { x: (-1.4, 30.0), y: (-2.0, 2.0) });
     }
 
     #[test]
     fn a_small_room_is_shown_whole() {
         let room = "[[wall]]\npoints = [[-1, -2], [5, -2], [5, 3], [-1, 3]]";
-        assert_eq!(view(room, 3.0), View { x: (-1.4, 5.4), y: (-2.4, 3.4) });
-        assert_eq!(view("", 3.0), View { x: (-0.4, 3.4), y: (-0.4, 0.4) });
+        assert_eq!(view(room, 3.0), FloorView { x: (-1.4, 5.4), y: (-2.4, 3.4) });
+        assert_eq!(view("", 3.0), FloorView { x: (-0.4, 3.4), y: (-0.4, 0.4) });
     }
 }

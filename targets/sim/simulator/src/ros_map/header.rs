@@ -25,7 +25,7 @@ pub struct Header {
 }
 
 /// Value of a key, and its position in the file.
-struct Value<'t> {
+struct HeaderValue<'t> {
     line: usize,
     column: usize,
     text: &'t str,
@@ -41,7 +41,7 @@ impl Header {
         let image = value(text, "image").ok_or_else(|| missing("no `image`: expected as in `image: map.pgm`"))?;
         let resolution = value(text, "resolution")
             .ok_or_else(|| missing("a map without scale: expected the metres of a pixel, as in `resolution: 0.05`"))?;
-        let number = |value: &Value<'_>| {
+        let number = |value: &HeaderValue<'_>| {
             let number = value.text.parse().ok().filter(|number: &f64| number.is_finite());
             number.ok_or_else(|| value.wrong(file, format!("{:?} is no number", value.text)))
         };
@@ -71,20 +71,20 @@ impl Header {
     }
 }
 
-impl Value<'_> {
+impl HeaderValue<'_> {
     fn wrong(&self, file: &str, what: String) -> WorldError {
         WorldError::new(file, Some((self.line, self.column)), what)
     }
 }
 
 /// Returns the value of a key, without quotes; `None` if the text does not have the key.
-fn value<'t>(text: &'t str, key: &str) -> Option<Value<'t>> {
+fn value<'t>(text: &'t str, key: &str) -> Option<HeaderValue<'t>> {
     let (number, line) = line(text, key)?;
     Some(trimmed(number, line, key.len() + 1, line.get(key.len() + 1..)?))
 }
 
 /// Returns the values of a key that has several values: `[1, 2]`, or one line `- 1` for each.
-fn numbers<'t>(text: &'t str, key: &str) -> Vec<Value<'t>> {
+fn numbers<'t>(text: &'t str, key: &str) -> Vec<HeaderValue<'t>> {
     let Some((number, line)) = line(text, key) else { return Vec::new() };
     let Some(begins) = line.find('[') else {
         let rows = (number + 1..).zip(text.lines().skip(number));
@@ -111,9 +111,9 @@ fn line<'t>(text: &'t str, key: &str) -> Option<(usize, &'t str)> {
 }
 
 /// Returns the value that begins at a byte of a line, without spaces, comment and quotes.
-fn trimmed<'t>(line: usize, whole: &'t str, from: usize, part: &'t str) -> Value<'t> {
+fn trimmed<'t>(line: usize, whole: &'t str, from: usize, part: &'t str) -> HeaderValue<'t> {
     let part = part.split(" #").next().unwrap_or_default();
     let blanks = part.len() - part.trim_start().len();
     let column = whole.get(..from + blanks).unwrap_or_default().chars().count() + 1;
-    Value { line, column, text: part.trim().trim_matches(['"', '\'']) }
+    HeaderValue { line, column, text: part.trim().trim_matches(['"', '\'']) }
 }

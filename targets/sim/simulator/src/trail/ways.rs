@@ -22,7 +22,7 @@ pub(crate) struct Ways {
     /// Passes of atoms, in order.
     pub(crate) marks: Vec<Mark>,
     /// Atoms of the plan's text, in the order in which they first began.
-    pub(crate) atoms: Vec<Atom>,
+    pub(crate) atoms: Vec<TrailAtom>,
     /// Number of times that an atom outside `atoms` began.
     pub(crate) uncounted: usize,
     /// Index in `atoms` by number and law. Numbers alone are ambiguous, because plans that replace each other may use
@@ -39,7 +39,7 @@ pub(crate) struct Ways {
 
 /// An atom of the plan's text.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Atom {
+pub(crate) struct TrailAtom {
     /// Number of the atom's state in the first pass of the enclosing loops.
     pub(crate) number: u64,
     pub(crate) law: String,
@@ -93,7 +93,7 @@ impl Ways {
     pub(crate) fn drove(&mut self, number: u64, name: &str, way: &[Point], until: Nanos) {
         let Some(place) = way.first().copied() else { return };
         self.marks.push(Mark { atom: Some(self.atoms.len()), t: Nanos::ZERO, way: way.to_vec() });
-        self.atoms.push(Atom { number, law: name.to_owned(), place, times: 1, total: until });
+        self.atoms.push(TrailAtom { number, law: name.to_owned(), place, times: 1, total: until });
     }
 
     /// Returns the path of the current pass.
@@ -147,7 +147,7 @@ impl Ways {
         found.or_else(|| {
             (next < MARKS_MOST).then(|| {
                 self.by_number.insert(key, next);
-                self.atoms.push(Atom { number, law: law.to_owned(), place, times: 0, total: Nanos::ZERO });
+                self.atoms.push(TrailAtom { number, law: law.to_owned(), place, times: 0, total: Nanos::ZERO });
                 next
             })
         })
