@@ -9,9 +9,9 @@ use mdle_compiler::diagnostic::{SourceId, Span};
 use mdle_compiler::plan::{Plan, PlanPart};
 use mdle_runtime::Nanos;
 
-use crate::launch::Loaded;
+use crate::launch::LaunchedPlan;
 use crate::places::{StopPlace, meant, places};
-use crate::run::{Run, StepKind};
+use crate::run::{DebugRun, StepKind};
 
 /// Number of a breakpoint.
 pub(crate) type Id = i64;
@@ -22,13 +22,13 @@ pub(crate) struct Breakpoints {
     places: Vec<StopPlace>,
     /// For each file, the numbers of its breakpoints, with the places at which they stop the run.
     lines: BTreeMap<SourceId, Vec<(Id, StopPlace)>>,
-    names: Vec<(Id, Name)>,
+    names: Vec<(Id, NamedBreakpoint)>,
     last: Id,
 }
 
 /// Condition of a breakpoint that has no place in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-enum Name {
+enum NamedBreakpoint {
     /// The entry of a scope with this name, or of an atom with this law.
     Entered(String),
     /// The first turn with a plan time of at least this time.
@@ -37,7 +37,7 @@ enum Name {
 
 impl Breakpoints {
     /// Returns the breakpoints of a plan; none is set.
-    pub(crate) fn new(loaded: &Loaded) -> Self {
+    pub(crate) fn new(loaded: &LaunchedPlan) -> Self {
         Self { places: places(loaded), lines: BTreeMap::new(), names: Vec::new(), last: 0 }
     }
 
@@ -50,7 +50,7 @@ impl Breakpoints {
     /// the number of each breakpoint, with its place or the reason why it has none.
     pub(crate) fn set(
         &mut self,
-        loaded: &Loaded,
+        loaded: &LaunchedPlan,
         path: &Path,
         wanted: &[(u32, Option<u32>)],
     ) -> Vec<(Id, Result<StopPlace, String>)> {
@@ -88,7 +88,7 @@ impl Breakpoints {
 
     /// Returns the breakpoints at the current position of a run. `step` is the step that led to this position, or
     /// `None` at the start of the run.
-    pub(crate) fn hits(&self, run: &Run<'_>, plan: &Plan, step: Option<StepKind>) -> Vec<Id> {
+    pub(crate) fn hits(&self, run: &DebugRun<'_>, plan: &Plan, step: Option<StepKind>) -> Vec<Id> {
         let entered = match step {
             None => 0,
             Some(StepKind::Transition { kept, .. }) => kept,
@@ -102,8 +102,8 @@ impl Breakpoints {
         };
         let at_places = self.lines.values().flatten().filter(|(_, place)| is_hit(place)).map(|(id, _)| *id);
         let by_name = self.names.iter().filter(|(_, name)| match name {
-            Name::Entered(name) => entered.iter().any(|part| is_called(*part, plan, name)),
-            Name::Time(time) => {
+            NamedBreakpoint::Entered(name) => entered.iter().any(|part| is_called(*part, plan, name)),
+            NamedBreakpoint::Time(time) => {
                 let begins = matches!(step, None | Some(StepKind::Turn));
                 begins && run.reports().t >= *time && run.reports_before().is_none_or(|before| before.t < *time)
             }
@@ -113,13 +113,15 @@ impl Breakpoints {
 }
 
 /// Parses the text of a breakpoint that has no place in a file: a name, or a time with its unit.
-fn name(plan: &Plan, text: &str) -> Result<Name, String> {
+fn name(plan: &Plan, text: &str) -> Result<NamedBreakpoint, String> {
     if text.starts_with(|c: char| c.is_ascii_digit()) {
-        return time(text).map(Name::Time).ok_or_else(|| format!("`{text}` is no time: write it as `2.5s` or `500ms`"));
+        return time(text)
+            .map(NamedBreakpoint::Time)
+            .ok_or_else(|| format!("`{text}` is no time: write it as `2.5s` or `500ms`"));
     }
     let is_there = plan.parts().any(|part| is_called(part, plan, text));
     let words = || format!("`{text}` is no plan, no behavior and no law of this plan; a time is written as `2.5s`");
-    if is_there { Ok(Name::Entered(text.to_owned())) } else { Err(words()) }
+    if is_there { Ok(NamedBreakpoint::Entered(text.to_owned())) } else { Err(words()) }
 }
 
 fn time(text: &str) -> Option<Nanos> {

@@ -14,7 +14,7 @@ const LONGEST: usize = 16_000_000;
 
 /// A request from the client.
 #[derive(Debug)]
-pub(crate) struct Request {
+pub(crate) struct ClientRequest {
     pub(crate) seq: i64,
     pub(crate) command: String,
     pub(crate) arguments: Value,
@@ -25,7 +25,7 @@ pub(crate) struct Client<'o> {
     /// Messages from the client. A separate thread reads them, so a request can interrupt a run.
     received: Receiver<Result<Value, ServeError>>,
     /// Requests that arrived during a run, in order of arrival.
-    waiting: VecDeque<Request>,
+    waiting: VecDeque<ClientRequest>,
     output: &'o mut dyn Write,
     /// Number of the last sent message.
     seq: i64,
@@ -48,7 +48,7 @@ impl<'o> Client<'o> {
     }
 
     /// Waits for the next request.
-    pub(crate) fn request(&mut self) -> Result<Request, ServeError> {
+    pub(crate) fn request(&mut self) -> Result<ClientRequest, ServeError> {
         if let Some(request) = self.waiting.pop_front() {
             return Ok(request);
         }
@@ -65,13 +65,13 @@ impl<'o> Client<'o> {
         while let Ok(message) = self.received.try_recv() {
             self.waiting.extend(request(message?)?);
         }
-        let is_end = |request: &Request| matches!(request.command.as_str(), "pause" | "terminate" | "disconnect");
+        let is_end = |request: &ClientRequest| matches!(request.command.as_str(), "pause" | "terminate" | "disconnect");
         Ok(self.waiting.iter().any(is_end))
     }
 
     /// Answers a request.
-    pub(crate) fn respond(&mut self, request: &Request, answer: Result<Value, String>) -> Result<(), ServeError> {
-        let Request { seq, command, .. } = request;
+    pub(crate) fn respond(&mut self, request: &ClientRequest, answer: Result<Value, String>) -> Result<(), ServeError> {
+        let ClientRequest { seq, command, .. } = request;
         let mut response = json!({ "type": "response", "request_seq": seq, "command": command });
         match answer {
             Ok(body) => {
@@ -104,7 +104,7 @@ impl<'o> Client<'o> {
 }
 
 /// Reads a request. Returns `None` for a response, which is ignored because the debugger sends no requests.
-fn request(mut message: Value) -> Result<Option<Request>, ServeError> {
+fn request(mut message: Value) -> Result<Option<ClientRequest>, ServeError> {
     match message.get("type").and_then(Value::as_str) {
         Some("request") => {}
         Some(_) => return Ok(None),
@@ -116,7 +116,7 @@ fn request(mut message: Value) -> Result<Option<Request>, ServeError> {
         return Err(ServeError::Protocol("a request has no `seq` or no `command`".into()));
     };
     let arguments = message.get_mut("arguments").map(Value::take).unwrap_or_default();
-    Ok(Some(Request { seq, command, arguments }))
+    Ok(Some(ClientRequest { seq, command, arguments }))
 }
 
 /// Reads the next message.

@@ -9,7 +9,7 @@ use mdle_compiler::plan::{Condition, RecordId};
 use mdle_compiler::trace::{Reports, Script};
 use mdle_files::read::LARGEST_DATA;
 use mdle_files::{Input, InputError, Settings};
-use mdle_language_service::lines::Lines;
+use mdle_language_service::lines::LineStarts;
 use serde::Deserialize;
 
 /// Arguments of the request `launch`.
@@ -31,17 +31,17 @@ pub(crate) struct Launch {
 
 /// A compiled plan with its script.
 #[derive(Debug)]
-pub(crate) struct Loaded {
+pub(crate) struct LaunchedPlan {
     pub(crate) compiled: Compiled,
     input: Input,
     script: Script,
     /// Lines of each file that was read.
-    lines: BTreeMap<SourceId, Lines>,
+    lines: BTreeMap<SourceId, LineStarts>,
     /// Texts of the `after` conditions, by the fact that each condition tests.
     facts: BTreeMap<(RecordId, u32), String>,
 }
 
-impl Loaded {
+impl LaunchedPlan {
     /// Compiles the plan and reads the script.
     ///
     /// # Errors
@@ -74,7 +74,8 @@ impl Loaded {
         }
         let facts = facts(&compiled);
         let mut loaded = Self { compiled, input, script, lines: BTreeMap::new(), facts };
-        loaded.lines = loaded.sources().into_iter().map(|source| (source, Lines::of(loaded.text(source)))).collect();
+        loaded.lines =
+            loaded.sources().into_iter().map(|source| (source, LineStarts::of(loaded.text(source)))).collect();
         Ok(loaded)
     }
 

@@ -6,14 +6,14 @@ use serde_json::{Value, json};
 use crate::ServeError;
 use crate::breakpoints::Id;
 use crate::run::StepKind;
-use crate::session::Session;
+use crate::session::DebugSession;
 
 /// Number of steps after which the run checks for a request that interrupts it.
 const LOOK: u64 = 4_096;
 
 /// A motion that the client requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Motion {
+pub(crate) enum RequestedMotion {
     /// Forward to the next breakpoint or to the end.
     Continue,
     /// Forward to the end of the current turn, or of the next turn if the current one has ended.
@@ -30,7 +30,7 @@ pub(crate) enum Motion {
     ContinueBack,
 }
 
-impl Motion {
+impl RequestedMotion {
     /// Returns the motion that a command requests; `None` if the command is not a motion.
     pub(crate) fn of(command: &str, arguments: &Value) -> Option<Self> {
         let is_fine = arguments.get("granularity").and_then(Value::as_str) == Some("instruction");
@@ -47,30 +47,34 @@ impl Motion {
     }
 }
 
-impl Session<'_, '_, '_> {
+impl DebugSession<'_, '_, '_> {
     /// Starts the run.
     pub(crate) fn start(&mut self, stops_on_entry: bool) -> Result<(), ServeError> {
         if stops_on_entry {
             return self.stopped("entry", "The plan is entered", &[]);
         }
         match self.breakpoints.hits(&self.run, &self.loaded.compiled.plan, None).as_slice() {
-            [] => self.go(Motion::Continue),
+            [] => self.go(RequestedMotion::Continue),
             hits => self.stopped("breakpoint", "Breakpoint", hits),
         }
     }
 
     /// Performs a motion, and reports where the run has stopped.
-    pub(crate) fn go(&mut self, motion: Motion) -> Result<(), ServeError> {
+    pub(crate) fn go(&mut self, motion: RequestedMotion) -> Result<(), ServeError> {
         self.lists.clear();
         match motion {
-            Motion::Continue | Motion::Turn | Motion::Transition | Motion::Out => self.forward(motion),
-            Motion::TurnBack => self.back("step", |_, step| step == Some(StepKind::End)),
-            Motion::TransitionBack => self.back("step", |_, step| matches!(step, Some(StepKind::Transition { .. }))),
-            Motion::ContinueBack => self.back("breakpoint", |hits, _| !hits.is_empty()),
+            RequestedMotion::Continue | RequestedMotion::Turn | RequestedMotion::Transition | RequestedMotion::Out => {
+                self.forward(motion)
+            }
+            RequestedMotion::TurnBack => self.back("step", |_, step| step == Some(StepKind::End)),
+            RequestedMotion::TransitionBack => {
+                self.back("step", |_, step| matches!(step, Some(StepKind::Transition { .. })))
+            }
+            RequestedMotion::ContinueBack => self.back("breakpoint", |hits, _| !hits.is_empty()),
         }
     }
 
-    fn forward(&mut self, motion: Motion) -> Result<(), ServeError> {
+    fn forward(&mut self, motion: RequestedMotion) -> Result<(), ServeError> {
         let is_scope = |part: PlanPart<'_>| matches!(part, PlanPart::Scope(_));
         let scope = self.run.open().enumerate().filter(|(_, open)| is_scope(open.part())).map(|(at, _)| at).next_back();
         let mut steps = 0_u64;
@@ -88,8 +92,10 @@ impl Session<'_, '_, '_> {
                 return self.stopped("breakpoint", "Breakpoint", &hits);
             }
             let is_there = match (motion, step) {
-                (Motion::Turn, StepKind::End) | (Motion::Transition, StepKind::Transition { .. }) => true,
-                (Motion::Out, StepKind::Transition { ended, .. }) => scope.is_none_or(|scope| ended <= scope),
+                (RequestedMotion::Turn, StepKind::End) | (RequestedMotion::Transition, StepKind::Transition { .. }) => {
+                    true
+                }
+                (RequestedMotion::Out, StepKind::Transition { ended, .. }) => scope.is_none_or(|scope| ended <= scope),
                 _ => false,
             };
             if is_there {

@@ -3,7 +3,7 @@
 use mdle_compiler::diagnostic::{SourceId, Span};
 use mdle_compiler::plan::PlanPart;
 
-use crate::launch::Loaded;
+use crate::launch::LaunchedPlan;
 
 /// A place at which a run can stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -19,7 +19,7 @@ pub(crate) struct StopPlace {
 }
 
 /// Returns all places of a plan, sorted by file and position.
-pub(crate) fn places(loaded: &Loaded) -> Vec<StopPlace> {
+pub(crate) fn places(loaded: &LaunchedPlan) -> Vec<StopPlace> {
     let place = |span: Span, is_operand: bool| {
         let (source, line, column) = loaded.place(span);
         StopPlace { source, line, column, is_operand, span }

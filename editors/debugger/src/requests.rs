@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
 
 use crate::places::{StopPlace, between};
-use crate::session::Session;
+use crate::session::DebugSession;
 use crate::stack::{StackFrame, frames};
 use crate::why::{sentence, why};
 
@@ -81,7 +81,11 @@ struct OfReference {
 ///
 /// # Errors
 /// Fails with a sentence for the user.
-pub(crate) fn answer(session: &mut Session<'_, '_, '_>, command: &str, arguments: &Value) -> Result<Value, String> {
+pub(crate) fn answer(
+    session: &mut DebugSession<'_, '_, '_>,
+    command: &str,
+    arguments: &Value,
+) -> Result<Value, String> {
     match command {
         "setBreakpoints" => set_breakpoints(session, read(arguments)?),
         "setFunctionBreakpoints" => Ok(set_names(session, read(arguments)?)),
@@ -102,7 +106,7 @@ fn read<T: DeserializeOwned>(arguments: &Value) -> Result<T, String> {
     serde_json::from_value(arguments).map_err(words)
 }
 
-fn set_breakpoints(session: &mut Session<'_, '_, '_>, wanted: SetBreakpoints) -> Result<Value, String> {
+fn set_breakpoints(session: &mut DebugSession<'_, '_, '_>, wanted: SetBreakpoints) -> Result<Value, String> {
     let path = wanted.source.path.ok_or("breakpoints can only be set in files")?;
     let base = session.base;
     let from_base = |wanted: &Wanted| {
@@ -122,11 +126,11 @@ fn set_breakpoints(session: &mut Session<'_, '_, '_>, wanted: SetBreakpoints) ->
     Ok(json!({ "breakpoints": answered.collect::<Vec<_>>() }))
 }
 
-fn position(session: &Session<'_, '_, '_>, place: &StopPlace) -> Value {
+fn position(session: &DebugSession<'_, '_, '_>, place: &StopPlace) -> Value {
     json!({ "line": place.line + session.base.line, "column": place.column + session.base.column })
 }
 
-fn set_names(session: &mut Session<'_, '_, '_>, wanted: SetNames) -> Value {
+fn set_names(session: &mut DebugSession<'_, '_, '_>, wanted: SetNames) -> Value {
     let names: Vec<String> = wanted.breakpoints.into_iter().map(|named| named.name).collect();
     let set = session.breakpoints.set_names(&session.loaded.compiled.plan, &names);
     let answered = set.into_iter().map(|(id, set)| match set {
@@ -136,7 +140,7 @@ fn set_names(session: &mut Session<'_, '_, '_>, wanted: SetNames) -> Value {
     json!({ "breakpoints": answered.collect::<Vec<_>>() })
 }
 
-fn locations(session: &Session<'_, '_, '_>, asked: Locations) -> Value {
+fn locations(session: &DebugSession<'_, '_, '_>, asked: Locations) -> Value {
     let Some(source) = asked.source.path.and_then(|path| session.loaded.source(&path)) else {
         return json!({ "breakpoints": [] });
     };
@@ -146,7 +150,7 @@ fn locations(session: &Session<'_, '_, '_>, asked: Locations) -> Value {
     json!({ "breakpoints": places.map(|place| position(session, place)).collect::<Vec<_>>() })
 }
 
-fn stack_trace(session: &Session<'_, '_, '_>, asked: &StackTrace) -> Value {
+fn stack_trace(session: &DebugSession<'_, '_, '_>, asked: &StackTrace) -> Value {
     let loaded = session.loaded;
     let mut frames = frames(&session.run, &loaded.compiled.plan);
     if frames.is_empty() {
@@ -166,7 +170,7 @@ fn stack_trace(session: &Session<'_, '_, '_>, asked: &StackTrace) -> Value {
 }
 
 /// Returns a frame as a protocol object, with its place in a file.
-fn shown(session: &Session<'_, '_, '_>, number: usize, frame: &StackFrame) -> Value {
+fn shown(session: &DebugSession<'_, '_, '_>, number: usize, frame: &StackFrame) -> Value {
     let loaded = session.loaded;
     let (source, line, column) = loaded.place(frame.span);
     let (_, end_line, end_column) = loaded.place(Span { start: frame.span.end, ..frame.span });
@@ -185,26 +189,26 @@ fn shown(session: &Session<'_, '_, '_>, number: usize, frame: &StackFrame) -> Va
 
 /// Returns the frame with this number; without a number, the frame of the current atom. Returns `None` once the plan
 /// has ended.
-fn frame(session: &Session<'_, '_, '_>, number: Option<usize>) -> Result<Option<StackFrame>, String> {
+fn frame(session: &DebugSession<'_, '_, '_>, number: Option<usize>) -> Result<Option<StackFrame>, String> {
     let frames = frames(&session.run, &session.loaded.compiled.plan);
     let index = number.unwrap_or(1).checked_sub(1).filter(|index| *index < frames.len().max(1));
     let index = index.ok_or_else(|| "there is no such frame: the run has gone on".to_owned())?;
     Ok(frames.into_iter().nth(index))
 }
 
-fn scopes(session: &mut Session<'_, '_, '_>, asked: &OfFrame) -> Result<Value, String> {
+fn scopes(session: &mut DebugSession<'_, '_, '_>, asked: &OfFrame) -> Result<Value, String> {
     let frame = frame(session, asked.frame_id)?;
     Ok(json!({ "scopes": session.lists.scopes(session.loaded, &session.run, frame.as_ref()) }))
 }
 
-fn variables(session: &Session<'_, '_, '_>, asked: &OfReference) -> Result<Value, String> {
+fn variables(session: &DebugSession<'_, '_, '_>, asked: &OfReference) -> Result<Value, String> {
     let list = session.lists.get(asked.variables_reference);
     let list = list.ok_or("there are no such variables: the run has gone on")?;
     Ok(json!({ "variables": list }))
 }
 
 /// Explains why a condition holds or does not hold.
-fn evaluate(session: &mut Session<'_, '_, '_>, asked: &Evaluate) -> Result<Value, String> {
+fn evaluate(session: &mut DebugSession<'_, '_, '_>, asked: &Evaluate) -> Result<Value, String> {
     let frames = frames(&session.run, &session.loaded.compiled.plan);
     let from = asked.frame_id.unwrap_or(1).saturating_sub(1).min(frames.len());
     let (inside, outwards) = frames.split_at(from);

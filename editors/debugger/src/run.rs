@@ -46,7 +46,7 @@ pub(crate) enum StepKind {
 
 /// A run of a plan on a script.
 #[derive(Debug)]
-pub(crate) struct Run<'p> {
+pub(crate) struct DebugRun<'p> {
     turns: &'p [Reports],
     tree: TreeWalk<'p>,
     at: RunPosition,
@@ -56,7 +56,7 @@ pub(crate) struct Run<'p> {
     apart: usize,
 }
 
-impl<'p> Run<'p> {
+impl<'p> DebugRun<'p> {
     /// Enters the plan at the first of `turns`; returns `None` if there is no turn.
     pub(crate) fn new(plan: &'p Plan, turns: &'p [Reports]) -> Option<Self> {
         let mut tree = TreeWalk::new(plan);
@@ -195,7 +195,7 @@ mod tests {
 
     /// Calls `test` with a run of a plan on a script of `turns` turns. In the script, bumper fires in every third and
     /// in every seventh turn.
-    fn with_run(turns: usize, test: impl FnOnce(Run<'_>)) {
+    fn with_run(turns: usize, test: impl FnOnce(DebugRun<'_>)) {
         let target = mdle_files::target(Some("sim")).unwrap();
         let (compiled, _) = compile(SourceId(0), PLAN, &target.alphabet, None);
         let line = |turn: usize| {
@@ -203,11 +203,11 @@ mod tests {
             format!("{{\"t\": {}.5, \"fired\": [{fired}]}}\n", turn)
         };
         let script = Script::read(&(0..turns).map(line).collect::<String>()).unwrap();
-        test(Run::new(&compiled[0].plan, script.turns()).unwrap());
+        test(DebugRun::new(&compiled[0].plan, script.turns()).unwrap());
     }
 
     /// Returns the complete state of a run as text.
-    fn state(run: &Run<'_>) -> String {
+    fn state(run: &DebugRun<'_>) -> String {
         format!("{:?} {:?}", run.at, run.tree)
     }
 

@@ -4,12 +4,12 @@ use serde_json::{Value, json};
 
 use crate::ServeError;
 use crate::breakpoints::Breakpoints;
-use crate::client::{Client, Request};
-use crate::launch::{Launch, Loaded};
-use crate::motion::Motion;
+use crate::client::{Client, ClientRequest};
+use crate::launch::{Launch, LaunchedPlan};
+use crate::motion::RequestedMotion;
 use crate::requests;
-use crate::run::Run;
-use crate::session::{Base, Session};
+use crate::run::DebugRun;
+use crate::session::{Base, DebugSession};
 use crate::variables::Lists;
 
 /// Serves a client until it ends the session.
@@ -46,31 +46,31 @@ fn capabilities() -> Value {
     })
 }
 
-fn launched(arguments: &Value) -> Result<(Launch, Loaded), String> {
+fn launched(arguments: &Value) -> Result<(Launch, LaunchedPlan), String> {
     let words = |error: serde_json::Error| format!("`launch` needs the paths `program` and `script`: {error}");
     let launch: Launch = serde_json::from_value(arguments.clone()).map_err(words)?;
-    let loaded = Loaded::read(&launch)?;
+    let loaded = LaunchedPlan::read(&launch)?;
     Ok((launch, loaded))
 }
 
 /// Answers `launch`, and serves the client until it ends the session.
 fn debug(
     client: &mut Client<'_>,
-    request: &Request,
+    request: &ClientRequest,
     base: Base,
     launch: &Launch,
-    loaded: &Loaded,
+    loaded: &LaunchedPlan,
 ) -> Result<(), ServeError> {
-    let Some(run) = Run::new(&loaded.compiled.plan, loaded.turns()) else {
+    let Some(run) = DebugRun::new(&loaded.compiled.plan, loaded.turns()) else {
         return client.respond(request, Err("the script has no turns".into()));
     };
     client.respond(request, Ok(Value::Null))?;
     client.event("initialized", json!({}))?;
     let breakpoints = Breakpoints::new(loaded);
-    Session { loaded, run, breakpoints, lists: Lists::default(), base, client }.serve(launch.stop_on_entry)
+    DebugSession { loaded, run, breakpoints, lists: Lists::default(), base, client }.serve(launch.stop_on_entry)
 }
 
-impl Session<'_, '_, '_> {
+impl DebugSession<'_, '_, '_> {
     fn serve(&mut self, stops_on_entry: bool) -> Result<(), ServeError> {
         loop {
             let request = self.client.request()?;
@@ -88,7 +88,7 @@ impl Session<'_, '_, '_> {
                     self.client.respond(&request, Ok(Value::Null))?;
                     self.stopped("pause", "Paused", &[])?;
                 }
-                command => match Motion::of(command, &request.arguments) {
+                command => match RequestedMotion::of(command, &request.arguments) {
                     Some(motion) => {
                         self.client.respond(&request, Ok(json!({ "allThreadsContinued": true })))?;
                         self.go(motion)?;

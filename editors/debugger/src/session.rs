@@ -2,8 +2,8 @@
 
 use crate::breakpoints::Breakpoints;
 use crate::client::Client;
-use crate::launch::Loaded;
-use crate::run::Run;
+use crate::launch::LaunchedPlan;
+use crate::run::DebugRun;
 use crate::variables::Lists;
 
 /// Numbers of the first line and the first column in the client's messages, 0 or 1.
@@ -14,9 +14,9 @@ pub(crate) struct Base {
 }
 
 /// The session of a client that debugs a plan.
-pub(crate) struct Session<'l, 'c, 'o> {
-    pub(crate) loaded: &'l Loaded,
-    pub(crate) run: Run<'l>,
+pub(crate) struct DebugSession<'l, 'c, 'o> {
+    pub(crate) loaded: &'l LaunchedPlan,
+    pub(crate) run: DebugRun<'l>,
     pub(crate) breakpoints: Breakpoints,
     pub(crate) lists: Lists,
     pub(crate) base: Base,

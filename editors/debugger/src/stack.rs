@@ -3,7 +3,7 @@
 use mdle_compiler::diagnostic::Span;
 use mdle_compiler::plan::{Plan, PlanPart};
 
-use crate::run::Run;
+use crate::run::DebugRun;
 
 /// A frame of the stack: an atom or a scope.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub(crate) struct StackFrame {
 }
 
 /// Returns the frames from the current atom to the plan; none once the plan has ended.
-pub(crate) fn frames(run: &Run<'_>, plan: &Plan) -> Vec<StackFrame> {
+pub(crate) fn frames(run: &DebugRun<'_>, plan: &Plan) -> Vec<StackFrame> {
     let (mut frames, mut loops, mut passes) = (Vec::new(), Vec::new(), String::new());
     for (open, element) in run.open().enumerate() {
         let (name, span) = match element.part() {

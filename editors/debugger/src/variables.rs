@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::launch::Loaded;
-use crate::run::{Run, TurnInput};
+use crate::launch::LaunchedPlan;
+use crate::run::{DebugRun, TurnInput};
 use crate::stack::StackFrame;
 use crate::why::{Reason, reason};
 
@@ -36,7 +36,7 @@ impl Lists {
     }
 
     /// Returns the groups of variables for a frame; once the plan has ended, only the group for the turn.
-    pub(crate) fn scopes(&mut self, loaded: &Loaded, run: &Run<'_>, frame: Option<&StackFrame>) -> Value {
+    pub(crate) fn scopes(&mut self, loaded: &LaunchedPlan, run: &DebugRun<'_>, frame: Option<&StackFrame>) -> Value {
         let mut lists = Vec::new();
         if let Some(frame) = frame {
             lists.push(("Condition", self.condition(loaded, run, frame)));
@@ -51,7 +51,7 @@ impl Lists {
     }
 
     /// Returns the operands of the frame's interrupt.
-    fn condition(&mut self, loaded: &Loaded, run: &Run<'_>, frame: &StackFrame) -> Vec<Value> {
+    fn condition(&mut self, loaded: &LaunchedPlan, run: &DebugRun<'_>, frame: &StackFrame) -> Vec<Value> {
         let Some(open) = run.open().nth(frame.open) else { return Vec::new() };
         let Some(interrupt) = open.part().interrupt() else { return Vec::new() };
         let whole = reason(&loaded.compiled.plan, open, &interrupt.condition, run.reports());
@@ -76,7 +76,7 @@ fn meters(nanometers: u64) -> String {
 }
 
 /// Returns the memory of a frame: timer, distance driven, passes of loops, memories of RISING, and record of `after`.
-fn kept(loaded: &Loaded, run: &Run<'_>, frame: &StackFrame) -> Vec<Value> {
+fn kept(loaded: &LaunchedPlan, run: &DebugRun<'_>, frame: &StackFrame) -> Vec<Value> {
     let reports = run.reports();
     let opened: Vec<_> = run.open().collect();
     let Some(open) = opened.get(frame.open) else { return Vec::new() };
@@ -98,7 +98,7 @@ fn kept(loaded: &Loaded, run: &Run<'_>, frame: &StackFrame) -> Vec<Value> {
 }
 
 /// Returns the variables of the turn: its number, its time, and the reports of the script.
-fn turn(run: &Run<'_>) -> Vec<Value> {
+fn turn(run: &DebugRun<'_>) -> Vec<Value> {
     let (at, reports) = (run.at(), run.reports());
     let state = match at.input {
         None => "transitions are made",

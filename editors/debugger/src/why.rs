@@ -5,8 +5,8 @@ use std::slice::Iter;
 use mdle_compiler::plan::{Condition, OperandPlace, Plan, condition_text};
 use mdle_compiler::trace::{OpenPart, Reports};
 
-use crate::launch::Loaded;
-use crate::run::Run;
+use crate::launch::LaunchedPlan;
+use crate::run::DebugRun;
 use crate::stack::StackFrame;
 
 /// Value of a condition in a turn, with its operands.
@@ -25,7 +25,12 @@ pub(crate) struct Reason {
 /// Explains the value of the condition in `expression`, which can be the frame's whole condition or a part of it,
 /// written as in the file or as conditions are printed. It can also be the first word of an operand; the name of a
 /// signal selects all comparisons of this signal. Returns `None` if the frame's condition has no such part.
-pub(crate) fn why(loaded: &Loaded, run: &Run<'_>, frame: &StackFrame, expression: &str) -> Option<Vec<Reason>> {
+pub(crate) fn why(
+    loaded: &LaunchedPlan,
+    run: &DebugRun<'_>,
+    frame: &StackFrame,
+    expression: &str,
+) -> Option<Vec<Reason>> {
     let (plan, reports) = (&loaded.compiled.plan, run.reports());
     let open = run.open().nth(frame.open)?;
     let interrupt = open.part().interrupt()?;

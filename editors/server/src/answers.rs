@@ -11,7 +11,7 @@ use crate::params::{Params, RequestError};
 use mdle_language_service::completion::ItemKind;
 use mdle_language_service::diagnostics::findings;
 use mdle_language_service::formatting::TextEdit;
-use mdle_language_service::lines::{Lines, Position};
+use mdle_language_service::lines::{LineStarts, Position};
 use mdle_language_service::outline::{Symbol, SymbolKind};
 use mdle_language_service::tokens as colours;
 use mdle_language_service::view::{View, view};
@@ -21,14 +21,14 @@ use mdle_language_service::{
 
 /// The document that a request refers to.
 #[derive(Debug)]
-pub(crate) struct Asked<'d> {
+pub(crate) struct RequestedDocument<'d> {
     pub(crate) documents: &'d Documents,
     pub(crate) uri: &'d str,
     pub(crate) document: &'d Document,
     pub(crate) plan: Plan,
 }
 
-impl Asked<'_> {
+impl RequestedDocument<'_> {
     /// Calls `feature` with the document.
     pub(crate) fn view<T>(&mut self, feature: impl FnOnce(&View<'_>) -> T) -> T {
         self.plan.view(feature)
@@ -36,12 +36,12 @@ impl Asked<'_> {
 
     pub(crate) fn byte(&self, at: Option<ProtocolPosition>) -> Result<usize, RequestError> {
         let at = at.ok_or_else(|| RequestError::params("missing `position`"))?;
-        Ok(Lines::of(&self.document.text).byte(&self.document.text, at.into()))
+        Ok(LineStarts::of(&self.document.text).byte(&self.document.text, at.into()))
     }
 
     fn bytes(&self, range: Option<Positions>) -> Result<Range<usize>, RequestError> {
         let Positions { start, end } = range.ok_or_else(|| RequestError::params("missing `range`"))?;
-        Ok(Lines::of(&self.document.text).range(&self.document.text, start.into(), end.into()))
+        Ok(LineStarts::of(&self.document.text).range(&self.document.text, start.into(), end.into()))
     }
 
     pub(crate) fn converter(&self) -> Converter<'_> {
@@ -66,13 +66,13 @@ fn markdown(text: &str) -> Value {
     json!({ "kind": "markdown", "value": text })
 }
 
-pub(crate) fn hover(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn hover(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let byte = asked.byte(params.position)?;
     let Some(hover) = asked.view(|view| about::hover(view, byte)) else { return Ok(Value::Null) };
     Ok(json!({ "contents": markdown(&hover.text), "range": asked.converter().own(&hover.range) }))
 }
 
-pub(crate) fn completion(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn completion(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let byte = asked.byte(params.position)?;
     let found = asked.view(|view| completion::completion(view, byte));
     let range = asked.converter().own(&found.range);
@@ -105,7 +105,7 @@ fn kind_of_item(kind: ItemKind) -> u32 {
     }
 }
 
-pub(crate) fn signature(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn signature(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let byte = asked.byte(params.position)?;
     let Some(found) = asked.view(|view| completion::signature_at(view, byte)) else { return Ok(Value::Null) };
     let params: Vec<_> = found.params.iter().map(|label| json!({ "label": label })).collect();
@@ -113,7 +113,7 @@ pub(crate) fn signature(asked: &mut Asked<'_>, params: &Params) -> Result<Value,
     Ok(json!({ "signatures": [signature], "activeSignature": 0, "activeParameter": found.active }))
 }
 
-pub(crate) fn symbols(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
+pub(crate) fn symbols(asked: &mut RequestedDocument<'_>, _: &Params) -> Result<Value, RequestError> {
     let symbols = asked.view(outline::symbols);
     let mut converter = asked.converter();
     Ok(symbols.iter().map(|symbol| symbol_value(&mut converter, symbol)).collect())
@@ -135,15 +135,15 @@ fn symbol_value(converter: &mut Converter<'_>, symbol: &Symbol) -> Value {
     })
 }
 
-pub(crate) fn folds(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
+pub(crate) fn folds(asked: &mut RequestedDocument<'_>, _: &Params) -> Result<Value, RequestError> {
     let folds = asked.view(outline::folds);
-    let (text, lines) = (&asked.document.text, Lines::of(&asked.document.text));
+    let (text, lines) = (&asked.document.text, LineStarts::of(&asked.document.text));
     let line = |byte: usize| lines.position(text, byte).line;
     let fold = |range: &Range<usize>| json!({ "startLine": line(range.start), "endLine": line(range.end) });
     Ok(folds.iter().map(fold).collect())
 }
 
-pub(crate) fn selections(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn selections(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let positions = params.positions.clone().ok_or_else(|| RequestError::params("missing `positions`"))?;
     let bytes: Vec<_> = positions.into_iter().map(|at| asked.byte(Some(at))).collect::<Result<_, _>>()?;
     let nested: Vec<_> = asked.view(|view| bytes.iter().map(|byte| outline::selections(view, *byte)).collect());
@@ -157,10 +157,10 @@ pub(crate) fn selections(asked: &mut Asked<'_>, params: &Params) -> Result<Value
     Ok(nested.iter().map(&mut chain).collect())
 }
 
-pub(crate) fn hints(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn hints(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let range = asked.bytes(params.range)?;
     let hints = asked.view(inlay::hints);
-    let (text, lines) = (&asked.document.text, Lines::of(&asked.document.text));
+    let (text, lines) = (&asked.document.text, LineStarts::of(&asked.document.text));
     let shown = hints.iter().filter(|hint| range.start <= hint.byte && hint.byte <= range.end);
     let hint = |hint: &inlay::Hint| {
         let position = convert::position(lines.position(text, hint.byte));
@@ -169,7 +169,7 @@ pub(crate) fn hints(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Req
     Ok(shown.map(hint).collect())
 }
 
-pub(crate) fn lenses(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
+pub(crate) fn lenses(asked: &mut RequestedDocument<'_>, _: &Params) -> Result<Value, RequestError> {
     let runnables = asked.view(lens::runnables);
     let mut converter = asked.converter();
     let lens = |plan: &lens::Runnable| {
@@ -182,7 +182,7 @@ pub(crate) fn lenses(asked: &mut Asked<'_>, _: &Params) -> Result<Value, Request
     Ok(runnables.iter().flat_map(lens).collect())
 }
 
-pub(crate) fn fixes(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn fixes(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let range = asked.bytes(params.range)?;
     let only = params.context.as_ref().and_then(|context| context.get("only")).and_then(Value::as_array);
     if only.is_some_and(|only| !only.iter().filter_map(Value::as_str).any(|kind| "quickfix".starts_with(kind))) {
@@ -210,19 +210,19 @@ pub(crate) fn fixes(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Req
     Ok(actions.into())
 }
 
-pub(crate) fn formatting(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
+pub(crate) fn formatting(asked: &mut RequestedDocument<'_>, _: &Params) -> Result<Value, RequestError> {
     Ok(asked.edits(layout::document(&asked.document.text)))
 }
 
-pub(crate) fn range_formatting(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn range_formatting(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let range = asked.bytes(params.range)?;
     let edits = asked.view(|view| layout::range(view, &range));
     Ok(asked.edits(edits))
 }
 
-pub(crate) fn tokens(asked: &mut Asked<'_>, _: &Params) -> Result<Value, RequestError> {
+pub(crate) fn tokens(asked: &mut RequestedDocument<'_>, _: &Params) -> Result<Value, RequestError> {
     let tokens = asked.view(colours::tokens);
-    let (text, lines) = (&asked.document.text, Lines::of(&asked.document.text));
+    let (text, lines) = (&asked.document.text, LineStarts::of(&asked.document.text));
     let mut data: Vec<u32> = Vec::with_capacity(5 * tokens.len());
     let mut last = Position { line: 0, character: 0 };
     for token in tokens {

@@ -10,11 +10,11 @@ use serde_json::Value;
 use crate::convert::{self, Converter};
 use crate::documents::{Document, Documents, is_alphabet};
 use mdle_language_service::diagnostics::findings;
-use mdle_language_service::lines::Lines;
+use mdle_language_service::lines::LineStarts;
 
 /// Diagnostics found by one check.
 #[derive(Debug, Default)]
-pub(crate) struct Checked {
+pub(crate) struct CheckResult {
     /// Diagnostics, by the URI of the document in which they are shown.
     pub(crate) diagnostics: BTreeMap<String, Vec<Value>>,
     /// `true` if the document uses other files, or names files that cannot be read.
@@ -22,15 +22,15 @@ pub(crate) struct Checked {
 }
 
 /// Checks the document `uri`; `book` is the address of the book, for links to explanations.
-pub(crate) fn check(documents: &Documents, uri: &str, document: &Document, book: Option<&str>) -> Checked {
+pub(crate) fn check(documents: &Documents, uri: &str, document: &Document, book: Option<&str>) -> CheckResult {
     if is_alphabet(&document.path) {
-        return Checked { diagnostics: [(uri.to_owned(), of_alphabet(document))].into(), uses_files: false };
+        return CheckResult { diagnostics: [(uri.to_owned(), of_alphabet(document))].into(), uses_files: false };
     }
     let mut plan = match documents.plan(document) {
         Ok(plan) => plan,
         Err(error) => {
             let diagnostics = [(uri.to_owned(), vec![convert::unplaced(&words(error))])];
-            return Checked { diagnostics: diagnostics.into(), uses_files: false };
+            return CheckResult { diagnostics: diagnostics.into(), uses_files: false };
         }
     };
     let found = plan.input.check(&plan.target.alphabet);
@@ -42,13 +42,13 @@ pub(crate) fn check(documents: &Documents, uri: &str, document: &Document, book:
         diagnostics.entry(of).or_default().push(converter.diagnostic(finding, book));
     }
     let uses_files = plan.input.files().count() > 1 || found.iter().any(|found| found.code.name() == "E0205");
-    Checked { diagnostics, uses_files }
+    CheckResult { diagnostics, uses_files }
 }
 
 /// Returns the diagnostics of an alphabet file.
 fn of_alphabet(document: &Document) -> Vec<Value> {
     let mut sources = Sources::default();
-    let (text, lines) = (document.text.as_str(), Lines::of(&document.text));
+    let (text, lines) = (document.text.as_str(), LineStarts::of(&document.text));
     let source = sources.add("alphabet.mdle", text);
     let (_, found) = alphabet::read(source, text);
     let diagnostic = |finding: mdle_language_service::diagnostics::Finding| {

@@ -8,14 +8,14 @@ use serde_json::{Value, json};
 
 use crate::documents::{Documents, Plan};
 use mdle_language_service::diagnostics::{FileRange, Finding};
-use mdle_language_service::lines::{Lines, Position};
+use mdle_language_service::lines::{LineStarts, Position};
 
 /// Converts places in a plan's files to protocol objects. The lines of each file are determined only once.
 #[derive(Debug)]
 pub(crate) struct Converter<'d> {
     documents: &'d Documents,
     plan: &'d Plan,
-    lines: BTreeMap<SourceId, Lines>,
+    lines: BTreeMap<SourceId, LineStarts>,
 }
 
 /// Returns a position as a protocol object.
@@ -24,7 +24,7 @@ pub(crate) fn position(at: Position) -> Value {
 }
 
 /// Returns a range as a protocol object.
-pub(crate) fn range(text: &str, lines: &Lines, range: &Range<usize>) -> Value {
+pub(crate) fn range(text: &str, lines: &LineStarts, range: &Range<usize>) -> Value {
     let [start, end] = [range.start, range.end].map(|byte| position(lines.position(text, byte)));
     json!({ "start": start, "end": end })
 }
@@ -47,7 +47,7 @@ impl<'d> Converter<'d> {
     /// Returns the range of a place in its file.
     pub(crate) fn range(&mut self, place: &FileRange) -> Value {
         let text = self.plan.input.sources.text(place.source);
-        let lines = self.lines.entry(place.source).or_insert_with(|| Lines::of(text));
+        let lines = self.lines.entry(place.source).or_insert_with(|| LineStarts::of(text));
         range(text, lines, &place.range)
     }
 

@@ -7,7 +7,7 @@ use mdle_files::{Input, InputError, Settings, Target, Unsaved, place, plan, targ
 use serde::Deserialize;
 
 use crate::uri;
-use mdle_language_service::lines::{Lines, Position};
+use mdle_language_service::lines::{LineStarts, Position};
 
 /// A document that is open in the editor.
 #[derive(Debug, Clone)]
@@ -19,7 +19,7 @@ pub(crate) struct Document {
 
 /// An edit as a protocol object. An edit without a range replaces the whole text.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Change {
+pub(crate) struct DocumentEdit {
     range: Option<Positions>,
     text: String,
 }
@@ -46,12 +46,12 @@ impl From<ProtocolPosition> for Position {
 
 impl Document {
     /// Applies the edits in order. Each edit refers to the text after the previous edit.
-    pub(crate) fn change(&mut self, changes: Vec<Change>) {
+    pub(crate) fn change(&mut self, changes: Vec<DocumentEdit>) {
         for change in changes {
             match change.range {
                 None => self.text = change.text,
                 Some(Positions { start, end }) => {
-                    let range = Lines::of(&self.text).range(&self.text, start.into(), end.into());
+                    let range = LineStarts::of(&self.text).range(&self.text, start.into(), end.into());
                     self.text.replace_range(range, &change.text);
                 }
             }

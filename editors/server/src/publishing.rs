@@ -18,7 +18,7 @@ impl Server<'_> {
         let Some(uri) = self.stale.pop_first() else { return Ok(()) };
         let documents = &self.documents;
         let checked = match documents.open.get(&uri) {
-            None => Ok(check::Checked::default()),
+            None => Ok(check::CheckResult::default()),
             Some(document) => guarded(|| Ok(check::check(documents, &uri, document, self.book.as_deref()))),
         };
         match checked {
@@ -34,7 +34,7 @@ impl Server<'_> {
 
     /// Stores the diagnostics of a check, and adds the documents that contain these or the previous diagnostics to
     /// `concerned`.
-    fn keep(&mut self, uri: String, checked: check::Checked) {
+    fn keep(&mut self, uri: String, checked: check::CheckResult) {
         if checked.uses_files {
             self.users.insert(uri.clone())
         } else {

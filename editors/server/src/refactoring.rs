@@ -8,13 +8,13 @@ use mdle_compiler::diagnostic::{Code, Severity};
 use mdle_files::{place, read};
 use serde_json::{Value, json};
 
-use crate::answers::Asked;
+use crate::answers::RequestedDocument;
 use crate::convert;
 use crate::documents::{Document, Documents, Plan};
 use crate::params::{Params, RequestError};
 use mdle_language_service::diagnostics::FileRange;
-use mdle_language_service::lines::Lines;
-use mdle_language_service::rename::{self as names, Named};
+use mdle_language_service::lines::LineStarts;
+use mdle_language_service::rename::{self as names, NamedItem};
 
 /// A definition: the canonical path of its file, and the byte range of the name.
 type Definition = (PathBuf, Range<usize>);
@@ -26,7 +26,7 @@ fn global(plan: &Plan, defined: &FileRange) -> Option<Definition> {
     Some((place(path).unwrap_or_else(|_| path.to_owned()), defined.range.clone()))
 }
 
-fn named(asked: &mut Asked<'_>, params: &Params) -> Result<Option<(Named, Definition)>, RequestError> {
+fn named(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Option<(NamedItem, Definition)>, RequestError> {
     let byte = asked.byte(params.position)?;
     let named = asked.view(|view| names::named(view, byte));
     Ok(named.and_then(|named| {
@@ -35,7 +35,7 @@ fn named(asked: &mut Asked<'_>, params: &Params) -> Result<Option<(Named, Defini
     }))
 }
 
-pub(crate) fn definition(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn definition(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let byte = asked.byte(params.position)?;
     if let Some(used) = asked.view(|view| names::used_file(view, byte)) {
         let file = asked.document.path.parent().unwrap_or(Path::new("")).join(used);
@@ -46,20 +46,20 @@ pub(crate) fn definition(asked: &mut Asked<'_>, params: &Params) -> Result<Value
     Ok(found.and_then(|(named, _)| asked.converter().location(&named.defined)).unwrap_or_default())
 }
 
-pub(crate) fn highlights(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn highlights(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let Some((named, _)) = named(asked, params)? else { return Ok(Value::Null) };
     let places = asked.view(|view| names::references(view, |place| *place == named.defined));
     let mut converter = asked.converter();
     Ok(places.iter().map(|place| json!({ "range": converter.range(place) })).collect())
 }
 
-pub(crate) fn references(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn references(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let Some((_, definition)) = named(asked, params)? else { return Ok(Value::Null) };
     let declared = params.context.as_ref().and_then(|context| context.get("includeDeclaration"));
     let with_definition = declared.and_then(Value::as_bool).unwrap_or(true);
     let mut locations = Vec::new();
-    for (path, File { text, ranges, .. }) in files_with(asked.documents, &definition) {
-        let (uri, lines) = (asked.documents.uri(&path), Lines::of(&text));
+    for (path, UsingFile { text, ranges, .. }) in files_with(asked.documents, &definition) {
+        let (uri, lines) = (asked.documents.uri(&path), LineStarts::of(&text));
         let is_shown = |range: &&Range<usize>| with_definition || **range != definition.1 || path != definition.0;
         let range = |range: &Range<usize>| json!({ "uri": uri, "range": convert::range(&text, &lines, range) });
         locations.extend(ranges.iter().filter(is_shown).map(range));
@@ -67,12 +67,12 @@ pub(crate) fn references(asked: &mut Asked<'_>, params: &Params) -> Result<Value
     Ok(locations.into())
 }
 
-pub(crate) fn prepare(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn prepare(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let Some((named, _)) = named(asked, params)? else { return Ok(Value::Null) };
     Ok(json!({ "range": asked.converter().range(&named.here), "placeholder": named.name }))
 }
 
-pub(crate) fn rename(asked: &mut Asked<'_>, params: &Params) -> Result<Value, RequestError> {
+pub(crate) fn rename(asked: &mut RequestedDocument<'_>, params: &Params) -> Result<Value, RequestError> {
     let name = params.new_name.as_deref().ok_or_else(|| RequestError::params("missing `newName`"))?;
     if !names::is_name(name) {
         return Err(RequestError::failed(format!("`{name}` is no name: letters, digits and `_`, and no keyword")));
@@ -84,8 +84,8 @@ pub(crate) fn rename(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Re
     keeps_meanings(asked.documents, &files, name)
         .map_err(|reason| RequestError::failed(format!("`{}` cannot become `{name}`: {reason}", named.name)))?;
     let mut changes = BTreeMap::new();
-    for (path, File { text, ranges, .. }) in files.iter().filter(|(_, file)| !file.ranges.is_empty()) {
-        let lines = Lines::of(text);
+    for (path, UsingFile { text, ranges, .. }) in files.iter().filter(|(_, file)| !file.ranges.is_empty()) {
+        let lines = LineStarts::of(text);
         let edit = |range: &Range<usize>| json!({ "range": convert::range(text, &lines, range), "newText": name });
         changes.insert(asked.documents.uri(path), ranges.iter().map(edit).collect::<Vec<_>>());
     }
@@ -94,7 +94,7 @@ pub(crate) fn rename(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Re
 
 /// A file that uses a definition.
 #[derive(Debug)]
-struct File {
+struct UsingFile {
     text: String,
     /// Byte ranges of the name's occurrences in the file.
     ranges: Vec<Range<usize>>,
@@ -103,7 +103,7 @@ struct File {
 }
 
 /// Returns the files of the project that use a definition, by path.
-fn files_with(documents: &Documents, definition: &Definition) -> BTreeMap<PathBuf, File> {
+fn files_with(documents: &Documents, definition: &Definition) -> BTreeMap<PathBuf, UsingFile> {
     let mut files = BTreeMap::new();
     let mut paths: BTreeSet<PathBuf> = documents.project();
     paths.insert(definition.0.clone());
@@ -123,7 +123,7 @@ fn files_with(documents: &Documents, definition: &Definition) -> BTreeMap<PathBu
 }
 
 /// Reads a file, and returns it if it uses the definition; `None` otherwise.
-fn seen(documents: &Documents, path: &Path, text: String, definition: &Definition) -> Option<File> {
+fn seen(documents: &Documents, path: &Path, text: String, definition: &Definition) -> Option<UsingFile> {
     let document = Document { path: path.to_owned(), text, version: 0 };
     let mut plan = documents.plan_for_any(&document).ok()?;
     let source = plan.input.source;
@@ -148,7 +148,7 @@ fn seen(documents: &Documents, path: &Path, text: String, definition: &Definitio
     let ranges: BTreeSet<_> = own.map(|(place, _)| (place.range.start, place.range.end)).collect();
     let found = plan.input.check(&plan.target.alphabet);
     let errors = found.iter().filter(|found| found.code.severity() == Severity::Error).map(|found| found.code);
-    Some(File {
+    Some(UsingFile {
         errors: errors.collect(),
         ranges: ranges.into_iter().map(|(start, end)| start..end).collect(),
         meanings,
@@ -157,7 +157,7 @@ fn seen(documents: &Documents, path: &Path, text: String, definition: &Definitio
 }
 
 /// Checks that all names in `files` keep their meanings if the definition is renamed to `name`.
-fn keeps_meanings(documents: &Documents, files: &BTreeMap<PathBuf, File>, name: &str) -> Result<(), String> {
+fn keeps_meanings(documents: &Documents, files: &BTreeMap<PathBuf, UsingFile>, name: &str) -> Result<(), String> {
     let mut renamed = documents.clone();
     for (path, file) in files {
         let mut text = file.text.clone();

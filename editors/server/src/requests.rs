@@ -3,7 +3,7 @@
 use lsp_server::ErrorCode;
 use serde_json::{Value, json};
 
-use crate::answers::{self, Asked};
+use crate::answers::{self, RequestedDocument};
 use crate::documents::{Documents, is_alphabet};
 use crate::params::{Params, RequestError};
 use crate::{commands, refactoring};
@@ -44,10 +44,10 @@ pub(crate) fn uri_of(params: &Value) -> Result<String, RequestError> {
 }
 
 /// A function that answers a request about a document.
-type Answer = fn(&mut Asked<'_>, &Params) -> Result<Value, RequestError>;
+type AnswerFunction = fn(&mut RequestedDocument<'_>, &Params) -> Result<Value, RequestError>;
 
 /// Returns the function that answers requests with this method; `None` if there is none.
-fn function(method: &str) -> Option<Answer> {
+fn function(method: &str) -> Option<AnswerFunction> {
     Some(match method {
         "textDocument/hover" => answers::hover,
         "textDocument/completion" => answers::completion,
@@ -84,5 +84,5 @@ pub(crate) fn answer(documents: &Documents, method: &str, params: Value) -> Resu
         return Ok(Value::Null);
     }
     let plan = documents.plan_for_any(document).map_err(|error| RequestError::failed(error.to_string()))?;
-    function(&mut Asked { documents, uri, document, plan }, &params)
+    function(&mut RequestedDocument { documents, uri, document, plan }, &params)
 }

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-use crate::documents::{Change, Document};
+use crate::documents::{Document, DocumentEdit};
 use crate::params::RequestError;
 use crate::server::Server;
 use crate::{requests, uri};
@@ -34,7 +34,7 @@ struct Changed {
     #[serde(rename = "textDocument")]
     document: Versioned,
     #[serde(rename = "contentChanges")]
-    changes: Vec<Change>,
+    changes: Vec<DocumentEdit>,
 }
 
 #[derive(Deserialize)]

@@ -27,7 +27,7 @@ pub struct OpenCall<'t> {
 
 /// An open bracket, with the words read in it so far.
 #[derive(Debug, Clone)]
-pub(crate) struct Open<'t> {
+pub(crate) struct OpenBracketWords<'t> {
     pub(crate) bracket: Bracket,
     /// Number of words and nested brackets read directly in the bracket.
     pub(crate) items: usize,
@@ -35,7 +35,7 @@ pub(crate) struct Open<'t> {
     pub(crate) call: Option<OpenCall<'t>>,
 }
 
-impl Open<'_> {
+impl OpenBracketWords<'_> {
     pub(crate) fn new(bracket: Bracket) -> Self {
         Self { bracket, items: 0, last: "", call: None }
     }
@@ -43,14 +43,14 @@ impl Open<'_> {
 
 /// Updates the stack of open brackets with the next word of the text. A bracket opens or closes; any other word belongs
 /// to the innermost open bracket. `touches` is `true` if the word directly follows a name.
-pub(crate) fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool) {
+pub(crate) fn read<'t>(stack: &mut Vec<OpenBracketWords<'t>>, word: &Word<'t>, touches: bool) {
     match word.text {
         "{" | "(" => {
             let bracket = opened(stack.last(), word.text, touches);
             if let Some(outer) = stack.last_mut() {
                 outer.items += 1;
             }
-            stack.push(Open::new(bracket));
+            stack.push(OpenBracketWords::new(bracket));
         }
         "}" | ")" => {
             stack.pop();
@@ -72,7 +72,7 @@ pub(crate) fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool
 
 /// Returns the kind of the bracket that `sign` opens inside the bracket `outer`. `touches` is `true` if the bracket
 /// directly follows a name.
-fn opened(outer: Option<&Open<'_>>, sign: &str, touches: bool) -> Bracket {
+fn opened(outer: Option<&OpenBracketWords<'_>>, sign: &str, touches: bool) -> Bracket {
     let Some(outer) = outer else { return if sign == "{" { Bracket::Plan } else { Bracket::Body } };
     match (sign, outer.bracket) {
         ("{", _) if outer.last.starts_with(|letter: char| letter.is_ascii_digit()) || outer.last == "inf" => {
@@ -96,7 +96,7 @@ fn is_keyword(word: &str) -> bool {
 }
 
 /// Updates the call that is being typed in the bracket `open`.
-fn read_in<'t>(open: &mut Open<'t>, word: &Word<'t>) {
+fn read_in<'t>(open: &mut OpenBracketWords<'t>, word: &Word<'t>) {
     let is_condition = open.bracket == Bracket::Condition;
     let begins = |name| Some(OpenCall { name, args: 0, is_condition });
     match (word.kind, &mut open.call) {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 pub use crate::brackets::OpenCall;
-use crate::brackets::{Bracket, Open, read};
+use crate::brackets::{Bracket, OpenBracketWords, read};
 use crate::words::{Word, WordKind, words};
 
 /// Kind of word that may follow at the cursor.
@@ -46,7 +46,7 @@ pub struct Context<'t> {
 /// plan.
 #[must_use]
 pub fn context(text: &str, byte: usize) -> Context<'_> {
-    let mut stack: Vec<Open<'_>> = Vec::new();
+    let mut stack: Vec<OpenBracketWords<'_>> = Vec::new();
     let mut found: Option<Context<'_>> = None;
     let mut labels = Vec::new();
     let mut before: Option<Word<'_>> = None;
@@ -87,7 +87,7 @@ pub fn context(text: &str, byte: usize) -> Context<'_> {
 }
 
 /// Returns the context of the cursor if it is before, in, or at the end of `word`.
-fn at_cursor<'t>(stack: &[Open<'t>], word: &Word<'t>, byte: usize) -> Context<'t> {
+fn at_cursor<'t>(stack: &[OpenBracketWords<'t>], word: &Word<'t>, byte: usize) -> Context<'t> {
     let is_in = word.range.start < byte;
     let typed = if is_in && word.kind == WordKind::Name { word.range.start..byte } else { byte..byte };
     let call = call(stack);
@@ -108,7 +108,7 @@ fn unit_at(number: &Word<'_>, byte: usize) -> Range<usize> {
 
 /// Returns the innermost call that encloses the cursor. If the innermost bracket contains arguments, the call is in the
 /// enclosing bracket.
-fn call<'t>(stack: &[Open<'t>]) -> Option<OpenCall<'t>> {
+fn call<'t>(stack: &[OpenBracketWords<'t>]) -> Option<OpenCall<'t>> {
     let open = stack.last()?;
     match (open.bracket, stack.len().checked_sub(2).and_then(|outer| stack.get(outer))) {
         (Bracket::Arguments, Some(outer)) => match &outer.call {
@@ -120,7 +120,7 @@ fn call<'t>(stack: &[Open<'t>]) -> Option<OpenCall<'t>> {
     }
 }
 
-fn expected(stack: &[Open<'_>]) -> Expected {
+fn expected(stack: &[OpenBracketWords<'_>]) -> Expected {
     let Some(open) = stack.last() else { return Expected::Plan };
     let outer = stack.len().checked_sub(2).and_then(|outer| stack.get(outer));
     match open.bracket {

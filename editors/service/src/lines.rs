@@ -13,11 +13,11 @@ pub struct Position {
 
 /// Byte offsets of the starts of the lines. A line ends with `\n`, `\r\n` or `\r`.
 #[derive(Debug, Clone)]
-pub struct Lines {
+pub struct LineStarts {
     starts: Vec<usize>,
 }
 
-impl Lines {
+impl LineStarts {
     /// Finds the lines of `text`.
     #[must_use]
     pub fn of(text: &str) -> Self {
@@ -87,7 +87,7 @@ mod tests {
     const TEXT: &str = "a𝒜b\r\nü∞\rx\n";
 
     fn byte(line: u32, character: u32) -> usize {
-        Lines::of(TEXT).byte(TEXT, Position { line, character })
+        LineStarts::of(TEXT).byte(TEXT, Position { line, character })
     }
 
     #[test]
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn a_byte_has_the_position_that_leads_to_it() {
-        let lines = Lines::of(TEXT);
+        let lines = LineStarts::of(TEXT);
         for at in (0..=TEXT.len()).filter(|at| TEXT.is_char_boundary(*at)) {
             let position = lines.position(TEXT, at);
             // The line break `\r\n` is a unit: no position is between its characters.

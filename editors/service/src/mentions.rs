@@ -54,7 +54,7 @@ impl Mention<'_> {
 #[must_use]
 pub fn mentions<'s>(files: &Files<'s>, alphabet: &Alphabet) -> Vec<Mention<'s>> {
     let plans = files.plans.iter().rev().map(|plan| (plan.name.node, plan)).collect();
-    let mut list = List { plans, alphabet, params: Vec::new(), labels: BTreeMap::new(), mentions: Vec::new() };
+    let mut list = MentionFinder { plans, alphabet, params: Vec::new(), labels: BTreeMap::new(), mentions: Vec::new() };
     for plan in &files.plans {
         list.labels.clear();
         list.params.clear();
@@ -124,7 +124,7 @@ pub fn bare_unit(type_name: &str) -> Option<Unit> {
     if kind == ParameterKind::Angle { Unit::from_name("deg") } else { kind.base_unit() }
 }
 
-struct List<'l, 's> {
+struct MentionFinder<'l, 's> {
     plans: BTreeMap<&'s str, &'l Plan<'s>>,
     alphabet: &'l Alphabet,
     /// Parameters of the definition.
@@ -134,7 +134,7 @@ struct List<'l, 's> {
     mentions: Vec<Mention<'s>>,
 }
 
-impl<'s> List<'_, 's> {
+impl<'s> MentionFinder<'_, 's> {
     fn add(&mut self, name: Name<'s>, role: Role, defined: Option<Span>) {
         // The parser inserts empty names that do not occur in the text.
         if name.span.start < name.span.end {

@@ -13,7 +13,7 @@ use crate::view::View;
 
 /// A plan, parameter or label at a byte offset.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Named {
+pub struct NamedItem {
     /// Place of the name in its definition.
     pub defined: FileRange,
     /// Place of the name at the byte offset.
@@ -24,11 +24,11 @@ pub struct Named {
 
 /// Returns the plan, parameter or label at a byte offset; `None` if no plan defines the name at this offset.
 #[must_use]
-pub fn named(view: &View<'_>, byte: usize) -> Option<Named> {
+pub fn named(view: &View<'_>, byte: usize) -> Option<NamedItem> {
     let mentions = mentions(view.files, view.alphabet);
     let mention = mentions.iter().find(|mention| mention.defined.is_some() && view.contains(mention.span, byte))?;
     let at = |span: Span| place(view.sources, span);
-    Some(Named { defined: at(mention.defined?), here: at(mention.span), name: mention.text.to_owned() })
+    Some(NamedItem { defined: at(mention.defined?), here: at(mention.span), name: mention.text.to_owned() })
 }
 
 /// Returns the path in the `use` at a byte offset, as written in the document; `None` if there is none.

@@ -44,7 +44,7 @@ pub(crate) enum CourseEnd {
 
 /// An exchange with the robot.
 #[derive(Clone, Copy)]
-pub(crate) struct Exchange {
+pub(crate) struct CourseExchange {
     /// Time of the exchange.
     pub(crate) t: Nanos,
     /// Output of the robot.
@@ -54,7 +54,7 @@ pub(crate) struct Exchange {
 }
 
 /// A turn of a run, with its result.
-pub(crate) struct Made {
+pub(crate) struct CourseTurn {
     /// Number of the turn, from 0.
     pub(crate) number: u64,
     /// Time of the turn.
@@ -106,14 +106,14 @@ impl Course {
 
     /// Sends the input of the last turn to the robot, and returns the robot's output. A fault of the robot ends the run
     /// and returns `None`.
-    pub(crate) fn exchange(&mut self) -> Option<Exchange> {
+    pub(crate) fn exchange(&mut self) -> Option<CourseExchange> {
         let t = self.robot.now();
         match self.robot.exchange(&self.input) {
             Ok(y) => {
                 let hits = y.pressed() && !self.touches;
                 self.contacts += u64::from(hits);
                 self.touches = y.pressed();
-                Some(Exchange { t, y, hits })
+                Some(CourseExchange { t, y, hits })
             }
             Err(fault) => {
                 self.end = Some(CourseEnd::Fault(fault.to_string()));
@@ -123,7 +123,7 @@ impl Course {
     }
 
     /// Runs a turn of the plan after an exchange; `y` is the robot's output.
-    pub(crate) fn turn(&mut self, y: &Sensed) -> Option<Made> {
+    pub(crate) fn turn(&mut self, y: &Sensed) -> Option<CourseTurn> {
         let number = self.turns;
         let t = Nanos(number.saturating_mul(PERIOD.0));
         if let Some(plan) = self.waiting.take() {
@@ -143,11 +143,11 @@ impl Course {
         } else if t >= self.limit {
             self.end = Some(CourseEnd::Limit);
         }
-        Some(Made { number, t, turn, began, moments })
+        Some(CourseTurn { number, t, turn, began, moments })
     }
 
     /// Sends the null input, unless the robot has a fault.
-    pub(crate) fn release(&mut self) -> Option<Exchange> {
+    pub(crate) fn release(&mut self) -> Option<CourseExchange> {
         self.input = Twist::default();
         if matches!(self.end, Some(CourseEnd::Fault(_))) { None } else { self.exchange() }
     }

@@ -8,7 +8,7 @@ use mdle_compiler::syntax::Loader;
 use mdle_compiler::{Compiled, Limit, check_with, compile_within};
 use mdle_language_service::view::{View, view};
 
-use crate::draft::{Draft, FILE, looked_up};
+use crate::draft::{FILE, PageFiles, looked_up};
 use crate::robot::robot;
 
 /// The file that is run, with the files that it uses and those of its robot's alphabet.
@@ -19,7 +19,7 @@ pub(crate) struct Document<'d> {
     pub(crate) source: SourceId,
     /// Alphabet of the robot.
     pub(crate) alphabet: &'static Alphabet,
-    draft: &'d Draft,
+    draft: &'d PageFiles,
     /// Plan files that were read. The keys are their paths without `.` and `..`.
     read: BTreeMap<String, SourceId>,
 }
@@ -47,7 +47,7 @@ impl<'d> Document<'d> {
     ///
     /// # Errors
     /// Fails if the text is too long, or if there is no such robot.
-    pub(crate) fn of(draft: &'d Draft) -> Result<Self, String> {
+    pub(crate) fn of(draft: &'d PageFiles) -> Result<Self, String> {
         Self::for_robot(&draft.robot, draft)
     }
 
@@ -55,7 +55,7 @@ impl<'d> Document<'d> {
     ///
     /// # Errors
     /// Fails if the text is too long, or if there is no such robot.
-    pub(crate) fn for_robot(name: &str, draft: &'d Draft) -> Result<Self, String> {
+    pub(crate) fn for_robot(name: &str, draft: &'d PageFiles) -> Result<Self, String> {
         let robot = robot(name)?;
         let mut sources = Sources::default();
         for (name, text) in &robot.files {

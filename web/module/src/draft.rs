@@ -10,7 +10,7 @@ pub(crate) const FILE: &str = "plan.mdle";
 
 /// The plan files of a page, as typed.
 #[derive(Debug, Clone, Default, Deserialize)]
-pub(crate) struct Draft {
+pub(crate) struct PageFiles {
     /// Text of the file that is run, [`FILE`].
     pub(crate) text: String,
     /// Texts of the other files, by their names; a name may begin with folders.
@@ -24,7 +24,7 @@ pub(crate) struct Draft {
     pub(crate) robot: String,
 }
 
-impl Draft {
+impl PageFiles {
     /// Returns the text of the file with the path `place`, or `None` if there is no such file.
     pub(crate) fn at(&self, place: &str) -> Option<&str> {
         if place == FILE { Some(&self.text) } else { self.files.get(place).map(String::as_str) }

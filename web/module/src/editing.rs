@@ -10,7 +10,7 @@ use mdle_language_service::fixes::fixes;
 use mdle_language_service::formatting;
 use mdle_language_service::hover::hover as about;
 use mdle_language_service::lenses::runnables;
-use mdle_language_service::lines::{Lines, Position};
+use mdle_language_service::lines::{LineStarts, Position};
 use mdle_language_service::tokens::{KINDS, tokens};
 use serde_json::{Value, json};
 
@@ -18,14 +18,14 @@ use crate::document::Document;
 use crate::draft::FILE;
 
 /// Converter between byte offsets in a text and positions.
-struct Places<'t> {
+struct OffsetConverter<'t> {
     text: &'t str,
-    lines: Lines,
+    lines: LineStarts,
 }
 
-impl<'t> Places<'t> {
+impl<'t> OffsetConverter<'t> {
     fn of(text: &'t str) -> Self {
-        Self { text, lines: Lines::of(text) }
+        Self { text, lines: LineStarts::of(text) }
     }
 
     /// Returns a range as `[line, column, line, column]`, its start and its end.
@@ -57,7 +57,7 @@ pub(crate) fn diagnose(document: &mut Document<'_>) -> Result<Value, String> {
         (plans, roots)
     });
     let text = document.sources.text(shown).to_owned();
-    let places = Places::of(&text);
+    let places = OffsetConverter::of(&text);
     let tokens: Vec<_> = document
         .view(shown, tokens)
         .iter()
@@ -74,7 +74,7 @@ fn diagnostics(document: &Document<'_>, found: &[Diagnostic], is_wanted: impl Fn
     let diagnostic = |(number, finding): (usize, &Finding)| {
         let source = finding.place.source;
         let text = document.sources.text(source);
-        let places = lines.entry(source).or_insert_with(|| Places::of(text));
+        let places = lines.entry(source).or_insert_with(|| OffsetConverter::of(text));
         let all = 0..text.len();
         let fixes =
             fixes(&document.sources, found.get(number..=number).unwrap_or(&[]), |place| place.source == source, &all);
@@ -105,7 +105,7 @@ fn diagnostics(document: &Document<'_>, found: &[Diagnostic], is_wanted: impl Fn
 pub(crate) fn complete(document: &mut Document<'_>, at: Position) -> Result<Value, String> {
     let (shown, _) = document.shown()?;
     let text = document.sources.text(shown).to_owned();
-    let places = Places::of(&text);
+    let places = OffsetConverter::of(&text);
     let completion = document.view(shown, |view| completion(view, places.byte(at)));
     let items: Vec<_> = completion.items.iter().map(item).collect();
     Ok(json!({ "range": places.range(&completion.range), "items": items }))
@@ -135,7 +135,7 @@ fn item(item: &Item) -> Value {
 pub(crate) fn hover(document: &mut Document<'_>, at: Position) -> Result<Value, String> {
     let (shown, _) = document.shown()?;
     let text = document.sources.text(shown).to_owned();
-    let places = Places::of(&text);
+    let places = OffsetConverter::of(&text);
     let found = document.view(shown, |view| about(view, places.byte(at)));
     Ok(found.map_or(Value::Null, |found| json!({ "range": places.range(&found.range), "text": found.text })))
 }
@@ -144,7 +144,7 @@ pub(crate) fn hover(document: &mut Document<'_>, at: Position) -> Result<Value, 
 pub(crate) fn signature(document: &mut Document<'_>, at: Position) -> Result<Value, String> {
     let (shown, _) = document.shown()?;
     let text = document.sources.text(shown).to_owned();
-    let places = Places::of(&text);
+    let places = OffsetConverter::of(&text);
     let found = document.view(shown, |view| signature_at(view, places.byte(at)));
     Ok(found.map_or(
         Value::Null,
@@ -154,7 +154,7 @@ pub(crate) fn signature(document: &mut Document<'_>, at: Position) -> Result<Val
 
 /// Returns the edits that format a text, or null if it has errors.
 pub(crate) fn format(text: &str) -> Value {
-    let places = Places::of(text);
+    let places = OffsetConverter::of(text);
     let edits = formatting::document(text);
     edits.map_or(Value::Null, |edits| {
         edits.iter().map(|edit| json!({ "range": places.range(&edit.range), "insert": edit.text })).collect()

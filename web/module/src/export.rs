@@ -9,9 +9,9 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::causes;
-use crate::course::{Course, CourseEnd, Exchange, Made};
+use crate::course::{Course, CourseEnd, CourseExchange, CourseTurn};
 use crate::plan::Plan;
-use crate::setup::{PERIOD, Setup};
+use crate::setup::{PERIOD, PageSetup};
 
 /// Maximum size of a log or a table, in bytes.
 const MOST: usize = 128 << 20;
@@ -31,12 +31,12 @@ pub(crate) enum ExportKind {
 }
 
 /// Repeats a run, and returns its file of this kind.
-pub(crate) fn export(kind: ExportKind, setup: &Setup) -> Result<Value, String> {
+pub(crate) fn export(kind: ExportKind, setup: &PageSetup) -> Result<Value, String> {
     let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;
     let mut course = Course::new(&plan, &ready, false)?;
     let words = setup.in_words(&ready.make);
-    let mut files = Files {
+    let mut files = ExportedFiles {
         kind,
         text: if kind == ExportKind::Trail { "t,x,y,heading\n".to_owned() } else { String::new() },
         drawing: Drawing::of(&course.robot, &ready.world, words, kind == ExportKind::Record),
@@ -69,15 +69,15 @@ pub(crate) fn export(kind: ExportKind, setup: &Setup) -> Result<Value, String> {
 }
 
 /// The files that are being written.
-struct Files {
+struct ExportedFiles {
     kind: ExportKind,
     text: String,
     drawing: Drawing,
 }
 
-impl Files {
-    fn exchanged(&mut self, course: &Course, exchange: &Exchange) {
-        let Exchange { t, y, hits } = exchange;
+impl ExportedFiles {
+    fn exchanged(&mut self, course: &Course, exchange: &CourseExchange) {
+        let CourseExchange { t, y, hits } = exchange;
         if self.kind == ExportKind::Trail {
             let pose = course.robot.pose();
             // Writing to a string cannot fail.
@@ -86,7 +86,7 @@ impl Files {
         self.drawing.exchanged(&course.robot, y, *t, *hits);
     }
 
-    fn turned(&mut self, course: &Course, made: &Made) {
+    fn turned(&mut self, course: &Course, made: &CourseTurn) {
         let Some(machine) = &course.machine else { return };
         let plan = machine.plan();
         if let Some((atom, written)) = made.began.and_then(|atom| Some((atom, plan.fsm().atoms.get(atom as usize)?))) {

@@ -10,14 +10,14 @@ use mdle_simulator::{Point, echoes};
 use serde_json::{Value, json};
 
 use crate::causes::cause;
-use crate::course::{Course, Exchange, Made};
+use crate::course::{Course, CourseExchange, CourseTurn};
 
 /// Maximum number of transitions of a turn that a page gets.
 const TRANSITIONS_MOST: usize = 40;
 
 /// Returns a turn as JSON; `before` is the time of the previous exchange.
-pub(crate) fn frame(course: &Course, exchange: &Exchange, made: &Made, before: Option<Nanos>) -> Value {
-    let Exchange { t, y, .. } = exchange;
+pub(crate) fn frame(course: &Course, exchange: &CourseExchange, made: &CourseTurn, before: Option<Nanos>) -> Value {
+    let CourseExchange { t, y, .. } = exchange;
     let pose = course.robot.pose();
     let ranges: Vec<Value> = (0..SONARS).map(|number| range(exchange, number)).collect();
     let heard = echoes(&pose, y, before).into_iter().flatten().map(|Point { x, y }| json!([round(x), round(y)]));
@@ -43,7 +43,7 @@ pub(crate) fn frame(course: &Course, exchange: &Exchange, made: &Made, before: O
 }
 
 /// Returns the range of the newest ping of a sonar; null without an echo.
-fn range(exchange: &Exchange, number: usize) -> Value {
+fn range(exchange: &CourseExchange, number: usize) -> Value {
     let sonar = SonarId::new(u8::try_from(number).unwrap_or(0));
     let newest = exchange.y.pings(sonar).newest_first().next();
     newest.and_then(|ping| ping.range).map_or(Value::Null, |range| json!(round(range.0)))

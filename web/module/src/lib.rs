@@ -21,4 +21,4 @@ mod tools;
 mod trial;
 mod why;
 
-pub use ask::Session;
+pub use ask::PageSession;

@@ -11,18 +11,18 @@
 
 use std::cell::RefCell;
 
-use crate::Session;
+use crate::PageSession;
 
 /// The only session of a module, with its request and its answer.
 #[derive(Default)]
-struct Exchange {
-    session: Session,
+struct OnlySession {
+    session: PageSession,
     request: Vec<u8>,
     answer: String,
 }
 
 thread_local! {
-    static EXCHANGE: RefCell<Exchange> = RefCell::default();
+    static EXCHANGE: RefCell<OnlySession> = RefCell::default();
 }
 
 /// Allocates memory for a request of this many bytes, and returns its address.
@@ -37,7 +37,7 @@ pub extern "C" fn mdle_room(length: usize) -> usize {
 /// Answers the request, and returns the length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn mdle_answer() -> usize {
-    EXCHANGE.with_borrow_mut(|Exchange { session, request, answer }| {
+    EXCHANGE.with_borrow_mut(|OnlySession { session, request, answer }| {
         // The previous answer may be large: it is freed before the next answer is created.
         *answer = String::new();
         *answer = session.answer(&std::mem::take(request));

@@ -9,7 +9,7 @@ use mdle_compiler::load::{self, Loaded, LoadedPlan};
 use mdle_simulator::alphabet::{Alphabet, NAME};
 
 use crate::document::Document;
-use crate::draft::Draft;
+use crate::draft::PageFiles;
 
 /// A compiled plan, from which any number of runs can start.
 pub(crate) struct Plan {
@@ -27,7 +27,7 @@ impl Plan {
     ///
     /// # Errors
     /// Fails with messages as `mdlec` prints them.
-    pub(crate) fn of(draft: &Draft, name: Option<&str>) -> Result<Self, String> {
+    pub(crate) fn of(draft: &PageFiles, name: Option<&str>) -> Result<Self, String> {
         let mut document = Document::for_robot(NAME, draft)?;
         let machine = Arc::new(document.compile(name, |_| Ok(()))?.machine);
         let loaded = load::load(&machine, &document.sources, document.alphabet).map_err(|error| error.to_string())?;

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use crate::causes;
 use crate::course::{Course, CourseEnd};
 use crate::plan::Plan;
-use crate::setup::{PERIOD, ReadyRun, Setup};
+use crate::setup::{PERIOD, PageSetup, ReadyRun};
 use crate::{floor, frame, why};
 
 /// Maximum number of moments of a turn that are shown.
@@ -18,7 +18,7 @@ const TRANSITIONS_MOST: usize = 20_000;
 
 /// Limits on the size of the data of a run.
 #[derive(Debug, Clone, Copy)]
-struct Limits {
+struct DataLimits {
     /// Maximum size of all moments, in bytes; a turn whose moments are not kept is explained by repeating the
     /// run.
     moments: usize,
@@ -26,7 +26,7 @@ struct Limits {
     turns: usize,
 }
 
-const LIMITS: Limits = Limits { moments: 128 << 20, turns: 64 << 20 };
+const LIMITS: DataLimits = DataLimits { moments: 128 << 20, turns: 64 << 20 };
 
 /// A run, with the data that explain each of its turns.
 pub(crate) struct Run {
@@ -36,7 +36,7 @@ pub(crate) struct Run {
     /// Moments of each turn, from the first turn until the limit was reached.
     moments: Vec<Vec<PlanMoment>>,
     /// Remaining size within the limits.
-    left: Limits,
+    left: DataLimits,
     /// `true` once the turns have reached their limit.
     is_full: bool,
     /// Time of the last exchange.
@@ -48,11 +48,11 @@ impl Run {
     ///
     /// # Errors
     /// Fails if the plan or the setup has errors.
-    pub(crate) fn begin(setup: &Setup) -> Result<Self, String> {
+    pub(crate) fn begin(setup: &PageSetup) -> Result<Self, String> {
         Self::within(LIMITS, setup)
     }
 
-    fn within(left: Limits, setup: &Setup) -> Result<Self, String> {
+    fn within(left: DataLimits, setup: &PageSetup) -> Result<Self, String> {
         let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
         let ready = setup.ready()?;
         let course = Course::new(&plan, &ready, true)?;

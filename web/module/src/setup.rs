@@ -5,7 +5,7 @@ use mdle_simulator::{Body, Goal, Make, PARTS, Simulated, Start, StartNoise, Wall
 use serde::Deserialize;
 use std::time::Duration;
 
-use crate::draft::Draft;
+use crate::draft::PageFiles;
 
 /// Maximum duration of a run, in seconds of simulated time.
 const LONGEST: f64 = 3600.0;
@@ -13,10 +13,10 @@ const LONGEST: f64 = 3600.0;
 /// A plan, and the world, the robot and the start of a run.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
-pub(crate) struct Setup {
+pub(crate) struct PageSetup {
     /// Files of the plan.
     #[serde(flatten)]
-    pub(crate) draft: Draft,
+    pub(crate) draft: PageFiles,
     /// Name of the plan to run; `None` for the only plan.
     pub(crate) plan: Option<String>,
     /// World as TOML.
@@ -56,7 +56,7 @@ pub(crate) struct ReadyRun {
 /// The period of a turn.
 pub(crate) const PERIOD: Nanos = alphabet::PERIOD;
 
-impl Setup {
+impl PageSetup {
     /// Reads world, body and start.
     ///
     /// # Errors

@@ -5,11 +5,11 @@ use serde_json::{Value, json};
 
 use crate::course::{Course, CourseEnd};
 use crate::plan::Plan;
-use crate::setup::Setup;
+use crate::setup::PageSetup;
 
 /// Performs a run, and returns its end: `over`, `limit` or `fault`; and, if there is a goal, `arrived`, `bumped` or
 /// `astray`, as `mdle run --goal` judges it.
-pub(crate) fn trial(setup: &Setup) -> Result<Value, String> {
+pub(crate) fn trial(setup: &PageSetup) -> Result<Value, String> {
     let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;
     let mut course = Course::new(&plan, &ready, false)?;

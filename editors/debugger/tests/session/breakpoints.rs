@@ -2,12 +2,12 @@
 
 use serde_json::{Value, json};
 
-use crate::client::Session;
+use crate::client::DebugSession;
 
 /// Sets breakpoints with `set`, and sends `commands`; returns, after each command, the time of the turn and the
 /// innermost frame.
-fn stops(test: &str, set: impl FnOnce(&mut Session), commands: &[&str]) -> Vec<String> {
-    let mut session = Session::of(test, crate::client::PLAN, crate::client::SCRIPT, &json!({}));
+fn stops(test: &str, set: impl FnOnce(&mut DebugSession), commands: &[&str]) -> Vec<String> {
+    let mut session = DebugSession::of(test, crate::client::PLAN, crate::client::SCRIPT, &json!({}));
     set(&mut session);
     let mut seqs = Vec::new();
     for command in commands {
@@ -59,7 +59,7 @@ fn an_operand_stops_before_it_ends_its_scope() {
 
 #[test]
 fn a_breakpoint_at_the_entry_stops_there_and_is_found_backwards() {
-    let set = |session: &mut Session| {
+    let set = |session: &mut DebugSession| {
         session.breakpoints(&[(1, 0), (6, 0)]);
     };
     let found =
@@ -72,7 +72,7 @@ fn a_breakpoint_at_the_entry_stops_there_and_is_found_backwards() {
 
 #[test]
 fn names_and_times_stop_a_run() {
-    let set = |session: &mut Session| {
+    let set = |session: &mut DebugSession| {
         let names = ["turn", "2.6s", "Shake"].map(|name| json!({ "name": name }));
         session.request("setFunctionBreakpoints", json!({ "breakpoints": names }));
     };
@@ -90,7 +90,7 @@ fn names_and_times_stop_a_run() {
 
 #[test]
 fn a_breakpoint_moves_to_the_next_place_or_says_why_not() {
-    let mut session = Session::launched("moved");
+    let mut session = DebugSession::launched("moved");
     let lines = session.breakpoints(&[(4, 0), (5, 0), (7, 0), (2, 30), (4, 1)]);
     let other = session.request(
         "setBreakpoints",

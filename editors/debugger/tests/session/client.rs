@@ -30,13 +30,13 @@ pub(crate) const SCRIPT: &str = r#"{"t": 0}
 "#;
 
 /// A session with a plan and a script in its own folder.
-pub(crate) struct Session {
+pub(crate) struct DebugSession {
     pub(crate) folder: PathBuf,
     input: Vec<u8>,
     seq: i64,
 }
 
-impl Session {
+impl DebugSession {
     /// Writes [`PLAN`] and [`SCRIPT`] to files, and launches the plan.
     pub(crate) fn launched(test: &str) -> Self {
         Self::of(test, PLAN, SCRIPT, &json!({ "stopOnEntry": true }))

@@ -3,17 +3,17 @@
 use mdle_debugger::ServeError;
 use serde_json::{Value, json};
 
-use crate::client::{PLAN, SCRIPT, Session, served};
+use crate::client::{DebugSession, PLAN, SCRIPT, served};
 
 /// Returns the error message of a launch that fails.
 fn refused(test: &str, plan: &str, script: &str, more: &Value) -> String {
-    let session = Session::of(test, plan, script, more);
+    let session = DebugSession::of(test, plan, script, more);
     session.end().refusal(2).to_owned()
 }
 
 #[test]
 fn a_launch_is_answered_before_the_client_sets_breakpoints() {
-    let mut session = Session::launched("order");
+    let mut session = DebugSession::launched("order");
     session.requests(&["configurationDone", "threads", "terminate"]);
     let messages = session.end();
     let shown =
@@ -57,7 +57,7 @@ fn a_plan_that_cannot_run_is_refused_with_its_messages() {
 
 #[test]
 fn requests_before_the_launch_and_unknown_ones_are_refused() {
-    let mut session = Session::launched("unknown");
+    let mut session = DebugSession::launched("unknown");
     let unknown = session.request("readMemory", json!({}));
     let without = session.request("setBreakpoints", json!({ "breakpoints": [] }));
     let messages = session.end();

@@ -2,11 +2,11 @@
 
 use serde_json::{Value, json};
 
-use crate::client::Session;
+use crate::client::DebugSession;
 
 /// Returns the stack at the entry and after each command, and the reason for each stop.
 fn stacks(test: &str, commands: &[&str]) -> (Vec<Vec<String>>, Vec<String>) {
-    let mut session = Session::launched(test);
+    let mut session = DebugSession::launched(test);
     session.requests(&["configurationDone"]);
     let mut traces = vec![session.request("stackTrace", json!({ "threadId": 1 }))];
     for command in commands {
@@ -79,7 +79,7 @@ fn a_run_stops_at_its_end_and_then_terminates() {
 fn a_plan_that_has_ended_can_be_gone_back() {
     let plan = "{ P (bumper) (Atom (null) (go 20 0)) }";
     let script = "{\"t\":0}\n{\"t\":1,\"fired\":[\"bumper\"]}\n{\"t\":2}\n";
-    let mut session = Session::of("over", plan, script, &json!({}));
+    let mut session = DebugSession::of("over", plan, script, &json!({}));
     session.requests(&["configurationDone"]);
     let over = session.request("stackTrace", Value::Null);
     session.requests(&["stepBack"]);

@@ -2,11 +2,11 @@
 
 use serde_json::{Value, json};
 
-use crate::client::Session;
+use crate::client::DebugSession;
 
 /// Sends `next` `steps` times, and returns the answers to `expressions`.
 fn evaluated(test: &str, steps: usize, expressions: &[&str]) -> Vec<String> {
-    let mut session = Session::launched(test);
+    let mut session = DebugSession::launched(test);
     session.requests(&["configurationDone"]);
     session.requests(&vec!["next"; steps]);
     let ask = |expression: &&str| {
@@ -55,7 +55,7 @@ fn a_condition_says_which_of_its_operands_hold() {
 fn a_number_shows_its_comparisons() {
     let plan = "{ P (r0 < 60cm OR NOT r0 < 3m AND bumper OR t > 9s)\n  (Atom (way > 2m) (go 20 0))\n}\n";
     let script = "{\"t\": 0}\n{\"t\": 1, \"fired\": [\"r0 < 3\"], \"way\": 1.5}\n{\"t\": 2, \"way\": 1.5}\n";
-    let mut session = Session::of("numbers", plan, script, &json!({ "stopOnEntry": true }));
+    let mut session = DebugSession::of("numbers", plan, script, &json!({ "stopOnEntry": true }));
     session.requests(&["configurationDone", "next", "next"]);
     let expressions = ["r0", "t", "way", "r0 < 3", "way > 2m", "60cm", "60", "r1"];
     let ask = |expression: &&str| session.request("evaluate", json!({ "expression": expression, "frameId": 1 }));
@@ -99,7 +99,7 @@ fn memories_and_records_are_seen() {
 
 #[test]
 fn a_frame_has_its_condition_what_it_keeps_and_the_turn() {
-    let mut session = Session::launched("variables");
+    let mut session = DebugSession::launched("variables");
     session.requests(&["configurationDone"]);
     session.requests(&["next"; 5]);
     let stack = session.request("stackTrace", json!({ "threadId": 1 }));

@@ -3,19 +3,19 @@
 
 use serde_json::Value;
 
-use super::{LIMITS, Limits, Run};
-use crate::draft::Draft;
-use crate::setup::Setup;
+use super::{DataLimits, LIMITS, Run};
+use crate::draft::PageFiles;
+use crate::setup::PageSetup;
 
 const DOCK: &str =
     "{ Dock (bumper)\n (Atom (wait 1s) (go 20 0))\n (Atom (NOT bumper) stop)\n (Atom (wait 2s) stop)\n}\n";
 /// A plan that makes 4,096 transitions in each turn.
 const SPIN: &str = "{ Spin (wait 1h)\n ExecPlan inf {\n  (Atom (NOT bumper) stop)\n  (Atom (wait 0s) stop)\n }\n}\n";
 
-fn begun(text: &str, limits: Limits) -> Run {
+fn begun(text: &str, limits: DataLimits) -> Run {
     let world = "[[wall]]\npoints = [[-1, -1], [9, -1], [9, 1], [-1, 1], [-1, -1]]\n".to_owned();
-    let draft = Draft { text: text.to_owned(), ..Draft::default() };
-    let setup = Setup { draft, world, limit: Some(60.0), ..Setup::default() };
+    let draft = PageFiles { text: text.to_owned(), ..PageFiles::default() };
+    let setup = PageSetup { draft, world, limit: Some(60.0), ..PageSetup::default() };
     Run::within(limits, &setup).expect("a run")
 }
 
@@ -33,7 +33,7 @@ fn made(run: &mut Run) -> (Vec<Value>, Value) {
 #[test]
 fn turns_are_explained_without_their_moments() {
     let mut run = begun(DOCK, LIMITS);
-    let mut lean = begun(DOCK, Limits { moments: 2000, ..LIMITS });
+    let mut lean = begun(DOCK, DataLimits { moments: 2000, ..LIMITS });
     let (turns, end) = made(&mut run);
     assert_eq!(made(&mut lean), (turns.clone(), end));
     assert!(lean.moments.len() < turns.len() / 2 && run.moments.len() == turns.len());
@@ -60,7 +60,7 @@ fn kept_moments_have_no_room_for_those_left_out() {
 
 #[test]
 fn a_run_that_is_too_large_ends() {
-    let mut run = begun(SPIN, Limits { turns: 50_000, ..LIMITS });
+    let mut run = begun(SPIN, DataLimits { turns: 50_000, ..LIMITS });
     let (turns, end) = made(&mut run);
     assert_eq!(end, serde_json::json!({ "how": "full" }));
     assert!(turns.len() > 1 && turns.len() < 100, "{} turns", turns.len());
