@@ -10,7 +10,7 @@ use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twi
 
 use crate::footprint::{Contact, Footprint};
 use crate::model::Drive;
-use crate::place::Point;
+use crate::point::Point;
 use crate::walls::Walls;
 use contact::{slid, turned};
 use odometry::Odometry;

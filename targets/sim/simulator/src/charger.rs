@@ -2,7 +2,7 @@
 
 use mdle_runtime::{Meters, Pose, Radians};
 
-use crate::place::Point;
+use crate::point::Point;
 
 /// Maximum error of the heading of a robot on its charger, to either side.
 const HEADING: Radians = Radians::from_degrees(15.0);

@@ -1,7 +1,7 @@
 //! Many robots in one world, with a search for robots that are near each other.
 
 use crate::footprint::Footprint;
-use crate::place::Point;
+use crate::point::Point;
 
 /// Minimum side length of a cell, in metres.
 const CELL_LEAST: f64 = 1.0;

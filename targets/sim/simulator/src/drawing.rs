@@ -4,8 +4,8 @@ use mdle_runtime::{Nanos, Pose, Sensed};
 
 use crate::footprint::{Footprint, Form};
 use crate::frames::Frames;
-use crate::place::Point;
 use crate::plot;
+use crate::point::Point;
 use crate::robot::Simulated;
 use crate::trail::Trail;
 use crate::world::World;

@@ -3,8 +3,8 @@
 use mdle_runtime::{Nanos, Pose};
 
 use crate::footprint::{Footprint, Form};
-use crate::place::Point;
 use crate::plot;
+use crate::point::Point;
 use crate::robot::Simulated;
 use crate::trail::{Companion, Trail};
 use crate::world::World;

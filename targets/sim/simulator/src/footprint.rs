@@ -9,7 +9,7 @@ use std::fmt;
 use mdle_runtime::{Pose, Radians, Shape};
 
 use crate::grid::Segment;
-use crate::place::Point;
+use crate::point::Point;
 use crate::surfaces::{Surface, apart};
 
 /// Radius of a Scout's body, which is a disc, in metres.

@@ -2,7 +2,7 @@
 
 use mdle_runtime::{Nanos, Pose, SONARS};
 
-use crate::place::Point;
+use crate::point::Point;
 
 /// Maximum number of frames kept; when it is reached, every second frame is removed.
 pub(crate) const FRAMES_MOST: usize = 800;

@@ -3,7 +3,7 @@
 use mdle_quantity::Quantity;
 use mdle_runtime::{Pose, Radians};
 
-use crate::place::Point;
+use crate::point::Point;
 
 /// Maximum coordinate and maximum radius, in metres, as in a world file.
 const FURTHEST: f64 = 1e6;

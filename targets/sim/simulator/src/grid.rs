@@ -5,7 +5,7 @@
 //! hit. The code uses only additions, multiplications, divisions and square roots, so that results have the same bits
 //! on every machine.
 
-use crate::place::Point;
+use crate::point::Point;
 
 /// Approximate number of cells per segment: more cells are faster but take more memory.
 const CELLS_FOR_EACH: f64 = 3.0;

@@ -6,7 +6,7 @@
 use crate::footprint::{Footprint, Form};
 use crate::grid::{Hit, Segment};
 use crate::outline::Outline;
-use crate::place::Point;
+use crate::point::Point;
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
 
 /// Minimum distance to which a moving object approaches the robot, in metres; the bumper feels the object at this

@@ -1,6 +1,6 @@
 //! The outline of a wall, a box or a disc.
 
-use crate::place::Point;
+use crate::point::Point;
 
 /// A wall, a box or a disc, represented by its outline.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,7 +12,7 @@ use crate::body::{Body, STEP};
 use crate::charger::Charger;
 use crate::footprint::{Footprint, Form};
 use crate::model::{self, Model, ModelPart};
-use crate::place::Point;
+use crate::point::Point;
 use crate::sonar::{Heard, Ring};
 use crate::start::{self, StartError};
 use crate::walls::{Others, Walls};

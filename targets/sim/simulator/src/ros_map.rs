@@ -13,7 +13,7 @@ mod tests;
 use mdle_runtime::Pose;
 
 use crate::outline::Outline;
-use crate::place::Point;
+use crate::point::Point;
 use crate::world::World;
 use crate::world_error::WorldError;
 use contours::contours;

@@ -10,7 +10,7 @@ use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, Radians, SONARS};
 
 use crate::model::{FiringOrder, Hearing, Transducer};
 use crate::noise::{Noise, Purpose};
-use crate::place::Point;
+use crate::point::Point;
 use crate::walls::Walls;
 
 /// The sonars and their last pings.

@@ -7,7 +7,7 @@ use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::footprint::{Footprint, Form};
-use crate::place::Point;
+use crate::point::Point;
 use crate::walls::{self, Walls};
 use crate::world::World;
 

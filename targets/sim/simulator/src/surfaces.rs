@@ -1,7 +1,7 @@
 //! Determines properties of the surface that a ray hits: its normal, and the nearest edge.
 
 use crate::grid::Segment;
-use crate::place::Point;
+use crate::point::Point;
 
 /// Distance below which the end of a segment counts as a point of another segment, in metres.
 const TOGETHER: f64 = 1e-3;

@@ -10,7 +10,7 @@ use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, Sensed, SonarId};
 
 use crate::footprint::{Footprint, Form};
 use crate::frames::{FilmFrame, Frames};
-use crate::place::Point;
+use crate::point::Point;
 pub(crate) use ways::{Mark, TrailAtom, Ways};
 
 /// Side length of a square in which at most one echo is kept, in metres, so that even a long run stores a limited

@@ -8,7 +8,7 @@ use crate::footprint::{Contact, Footprint, Form};
 use crate::grid::{Grid, Hit, Segment};
 use crate::moving::Moving;
 use crate::outline::Outline;
-use crate::place::Point;
+use crate::point::Point;
 use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
 use crate::world::World;
 

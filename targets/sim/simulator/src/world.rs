@@ -7,7 +7,7 @@ use crate::charger::Charger;
 use crate::goal::Goal;
 use crate::moving::Thing;
 use crate::outline::Outline;
-use crate::place::Point;
+use crate::point::Point;
 
 /// Maximum number of walls and sides; preparing a million of them takes a second.
 const SEGMENTS_MOST: usize = 1_000_000;

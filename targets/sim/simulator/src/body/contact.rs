@@ -4,7 +4,7 @@
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::footprint::{Contact, Footprint};
-use crate::place::Point;
+use crate::point::Point;
 use crate::walls::Walls;
 
 /// Distance by which a slide moves away from the surface, in metres, so that rounding errors do not move the body into

@@ -4,7 +4,7 @@ use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::model::Slip;
 use crate::noise::{Noise, Purpose};
-use crate::place::Point;
+use crate::point::Point;
 
 /// Pose that the robot computes from the motion of its wheels, relative to the start pose.
 #[derive(Debug, Clone)]

@@ -13,7 +13,7 @@ use super::shapes::{Pixel, RADIUS, badge, circle, cross, dots, line, simplified,
 use super::sizes::{LEFT, MARGIN};
 use super::{floor, labels, legend, things};
 use crate::footprint::{Footprint, Form};
-use crate::place::Point;
+use crate::point::Point;
 use crate::trail::{Companion, Trail};
 use crate::world::World;
 

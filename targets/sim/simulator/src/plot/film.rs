@@ -5,7 +5,7 @@ use svg::node::element::{Animate, AnimateTransform};
 
 use super::layout::round_step;
 use crate::frames::FilmFrame;
-use crate::place::Point;
+use crate::point::Point;
 use crate::trail::{Mark, Trail};
 
 /// Maximum duration of the film, in seconds, without the pause at the end.

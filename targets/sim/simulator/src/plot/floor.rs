@@ -7,7 +7,7 @@ use super::shapes::{Pixel, circle, line, polyline, tenths, text, through};
 use super::sizes::{LEFT, MARGIN};
 use crate::goal::Zone;
 use crate::outline::Outline;
-use crate::place::Point;
+use crate::point::Point;
 use crate::world::World;
 
 /// Minimum distance between two labels of an axis, in pixels.

@@ -5,7 +5,7 @@ use super::shapes::Pixel;
 use super::sizes::{LEFT, LETTER, LETTERS, MARGIN};
 use super::title::Title;
 use super::view::{FloorView, range};
-use crate::place::Point;
+use crate::point::Point;
 use crate::trail::Trail;
 use crate::world::World;
 

@@ -16,7 +16,7 @@ use super::strip::{STRIP, strip};
 use super::{floor, legend, things};
 use crate::footprint::Form;
 use crate::frames::{FilmFrame, Frames};
-use crate::place::Point;
+use crate::point::Point;
 use crate::trail::Trail;
 use crate::world::World;
 

@@ -6,7 +6,7 @@ use svg::parser::Event;
 use super::{animated, svg};
 use crate::footprint::{Footprint, Form};
 use crate::frames::{FilmFrame, Frames};
-use crate::place::Point;
+use crate::point::Point;
 use crate::trail::Trail;
 use crate::world::World;
 

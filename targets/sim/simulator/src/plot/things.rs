@@ -8,7 +8,7 @@ use super::layout::Layout;
 use super::shapes::{Pixel, polyline, tenths};
 use crate::frames::FilmFrame;
 use crate::moving::{Schedule, Thing};
-use crate::place::Point;
+use crate::point::Point;
 use crate::trail::Trail;
 use crate::world::World;
 

@@ -9,7 +9,7 @@ use super::layout::round_step;
 use super::shapes::{Pixel, circle, line, polyline, simplified, tenths, text};
 use super::sizes::MARGIN;
 use super::view::range;
-use crate::place::Point;
+use crate::point::Point;
 
 /// Width of a picture, in pixels.
 const WIDTH: f64 = 960.0;

@@ -13,7 +13,7 @@ use mdle_runtime::Radians;
 
 use crate::footprint::Footprint;
 use crate::model::Hearing;
-use crate::place::Point;
+use crate::point::Point;
 use crate::surfaces::{Surface, dot};
 use crate::walls::{Reached, Walls};
 

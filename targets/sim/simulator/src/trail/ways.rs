@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use mdle_runtime::Nanos;
 
-use crate::place::Point;
+use crate::point::Point;
 
 /// Minimum distance between two stored positions, in metres; a smaller distance is less than a pixel.
 const APART: f64 = 0.01;

@@ -9,7 +9,7 @@ use crate::charger::Charger;
 use crate::goal::{Goal, Zone};
 use crate::moving::{Schedule, Thing, Waypoint};
 use crate::outline::Outline;
-use crate::place::Point;
+use crate::point::Point;
 
 /// Maximum coordinate, in metres; beyond it, rounding would lose millimetres.
 const FURTHEST: f64 = 1e6;

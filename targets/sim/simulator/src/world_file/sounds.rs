@@ -6,7 +6,7 @@ use toml::Spanned;
 use super::Wrong;
 use super::outlines::Unit;
 use super::text::{SoundText, TomlTable};
-use crate::place::Point;
+use crate::point::Point;
 
 /// Default level of a source, in dB.
 const LEVEL: f64 = 10.0;
