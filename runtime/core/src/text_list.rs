@@ -12,7 +12,7 @@ impl<'a> TextList<'a> {
     /// The empty list.
     pub const NONE: Self = Self::new("", &[]);
 
-    /// Returns the list of the texts in `joined`, which have no separators; `ends` has the byte offset at which
+    /// Creates the list of the texts in `joined`, which have no separators; `ends` contains the byte offset at which
     /// each text ends.
     #[must_use]
     pub const fn new(joined: &'a str, ends: &'a [u32]) -> Self {
