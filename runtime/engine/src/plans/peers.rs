@@ -1,33 +1,33 @@
-//! Requests of other robots for plans to take over. After a safety rule has replaced or ended a plan, they are refused.
+//! Requests from other robots that a plan take over. They are refused after a safety rule has replaced or ended a plan.
 
 use super::PlanEvent;
 
-/// Reason to bar plans of other robots: a safety rule has replaced the plan.
+/// Reason for barring plans of other robots after a safety rule has replaced the plan.
 pub(crate) const REPLACED: &str = "a safety rule has replaced the plan; the robot takes plans again once its operator \
                                    lets one take over in `mdle shell`, or begins a new run";
-/// Reason to bar plans of other robots: a safety rule has ended a plan.
+/// Reason for barring plans of other robots after a safety rule has ended a plan.
 pub(crate) const ENDED: &str = "a safety rule has ended a plan; the robot takes plans again once its operator lets one \
                                 take over in `mdle shell`, or begins a new run";
 
-/// Requests of other robots, and the bar that a safety rule has imposed on them.
+/// Requests of other robots, and the bar (refusal of requests) that a safety rule has imposed on them.
 #[derive(Debug, Default)]
 pub(super) struct PeerRequests {
     /// Numbers of the requests whose plans have neither begun nor been refused yet.
     open: Vec<u32>,
-    /// Events of these requests that have not been taken yet. The events that a session takes contain them as well.
+    /// Events of these requests that have not been taken yet. A session receives them as well.
     events: Vec<PlanEvent>,
     bar: Option<Bar>,
 }
 
-/// A bar against plans of other robots.
+/// The refusal of plans that other robots request, imposed by a safety rule.
 #[derive(Debug)]
 struct Bar {
-    /// Number of the last request before the bar was imposed.
+    /// Number of the last request that was made before the bar was imposed.
     last: u32,
     /// Reason for the bar, as a sentence.
     reason: &'static str,
-    /// `true` once the bar is lifted, because a plan that the operator requested after the bar has begun. Requests that
-    /// other robots made after the bar are then permitted.
+    /// `true` once a plan has begun that the operator requested after the bar was imposed. Requests that other robots
+    /// have made since the bar was imposed are then permitted.
     is_lifted: bool,
 }
 
@@ -56,14 +56,14 @@ impl PeerRequests {
         std::mem::take(&mut self.events)
     }
 
-    /// Bars requests of other robots for this reason: requests up to number `last` permanently, later ones until the
-    /// bar is lifted.
+    /// Bars requests of other robots for this reason. Requests up to number `last` stay barred; later ones are barred
+    /// until the bar is lifted.
     pub(super) fn bar(&mut self, last: u32, reason: &'static str) {
         self.bar = Some(Bar { last, reason, is_lifted: false });
     }
 
-    /// Lifts the bar because a plan has begun that no other robot requested, provided that its request `ticket` was
-    /// made after the bar.
+    /// Permits new requests from other robots again, because the plan that the operator requested with the number
+    /// `ticket` has begun. Has no effect if the operator requested the plan before the requests were barred.
     pub(super) fn lift(&mut self, ticket: u32) {
         if let Some(bar) = self.bar.as_mut().filter(|bar| ticket > bar.last) {
             bar.is_lifted = true;

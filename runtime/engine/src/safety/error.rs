@@ -7,7 +7,7 @@ use std::fmt;
 pub struct RulesError {
     /// Line of the file, from 1.
     pub line: usize,
-    /// Sentence with what to write instead.
+    /// Sentence that says what to write instead.
     pub message: String,
 }
 
