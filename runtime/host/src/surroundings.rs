@@ -14,7 +14,7 @@ use crate::required::Required;
 use crate::signals::Signals;
 use crate::turn_watch::TurnWatch;
 
-/// Environment of a run: time, signals and output; tests provide their own.
+/// Environment of a run: time, signals and output. Tests provide their own environment.
 pub(crate) struct Surroundings<'e, I, O> {
     /// Source of real time.
     pub(crate) instants: I,
@@ -30,7 +30,7 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) elapsed: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
-/// Options of a run, and words that its reports need.
+/// Options of a run, and words for its reports.
 pub(crate) struct RunSettings<'a> {
     /// Plan's name and version.
     pub(crate) program: Program<'a>,
@@ -51,7 +51,7 @@ impl RunSettings<'_> {
 
 /// Data of the plan that the options determine.
 pub(crate) struct PlanData {
-    /// Paths that the plan replays.
+    /// Paths that the plan can replay.
     pub(crate) store: PathStore,
     /// Names of the paths in `store`.
     pub(crate) paths: Vec<&'static str>,
