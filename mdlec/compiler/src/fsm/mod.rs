@@ -1,5 +1,5 @@
-//! State machine of a plan: lowering, validation, matrices, files. Only [`lower`] constructs a [`Machine`]; all
-//! other code reads it by its elements.
+//! State machine of a plan: lowering, validation, matrices, files. Only [`lower`] constructs a [`Machine`]; all other
+//! code accesses a machine by its elements.
 
 mod draft;
 mod element;
