@@ -1,4 +1,4 @@
-//! The turns of all robots of a scenario, on a common clock (docs/src/many_robots.md).
+//! Makes the turns of all robots of a scenario, on a common clock (docs/src/many_robots.md).
 
 use std::time::Duration;
 
@@ -22,13 +22,13 @@ const FAR: f64 = 100.0;
 pub(super) struct Fleet {
     runners: Vec<Runner>,
     period: Duration,
-    /// Minimum gap between two robots in any turn, in metres, with the numbers of the two robots; `None` if no two
-    /// robots were closer than [`FAR`].
+    /// Minimum gap between two robots so far, in metres, and the numbers of these robots; `None` if no two robots were
+    /// closer than [`FAR`].
     nearest: Option<(f64, usize, usize)>,
 }
 
 impl Fleet {
-    /// Returns the robots before their first turn. If `are_recorded` is `true`, they collect the data that a record
+    /// Creates the robots before their first turn. If `are_recorded` is `true`, they collect the data that a record
     /// needs.
     ///
     /// # Errors
@@ -83,7 +83,7 @@ impl Fleet {
         outputs.collect()
     }
 
-    /// Updates the poses of the other robots that a robot senses.
+    /// Updates the poses of the other robots that the robot `number` senses.
     fn look(&mut self, number: usize) {
         let others = self.runners.iter().enumerate().filter(|(other, _)| *other != number);
         let others: Vec<Footprint> = others.map(|(_, other)| other.robot.footprint()).collect();
@@ -105,7 +105,8 @@ impl Fleet {
         }
     }
 
-    /// Reports the end of a run at time `t` with these outputs, and stops the robots that still drive.
+    /// Reports the end of a run at time `t`, and stops the robots that still drive. `outputs` contains the last output
+    /// of each robot.
     fn ends(&mut self, outputs: &[Sensed], t: Nanos, output: &mut Output) {
         for (runner, y) in self.runners.iter_mut().zip(outputs) {
             let law = runner.law();
@@ -132,7 +133,7 @@ impl Fleet {
 }
 
 impl Runner {
-    /// Returns the current law.
+    /// Returns the current law; `None` if no law runs.
     fn law(&self) -> Option<String> {
         let machine = self.machine()?;
         machine.atom().map(|atom| machine.plan().law(atom).to_owned())
