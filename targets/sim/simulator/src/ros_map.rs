@@ -21,7 +21,7 @@ pub use header::Header;
 use image::Image;
 
 impl Header {
-    /// Returns the world of this header and of the image with the contents `bytes`; `file` is the name of the image in
+    /// Creates the world that this header and an image describe. `bytes` contains the image file; `file` is its name in
     /// error messages.
     ///
     /// # Errors
