@@ -68,7 +68,7 @@ pub(crate) fn export(kind: ExportKind, setup: &Setup) -> Result<Value, String> {
     Ok(json!({ "output": files.finished() }))
 }
 
-/// The files that are being written.
+/// The files that the run is writing.
 struct Files {
     kind: ExportKind,
     text: String,
