@@ -11,7 +11,8 @@ use mdle_theory::theorem::{Answer, Machine, as_printed, augment, decompile as th
 /// Maximum number of states for which the matrices of a machine are printed.
 const SHOWN: usize = 12;
 
-/// Prints the plan of a machine or, with `--as-printed`, whether the conditions as printed in the paper hold.
+/// Prints the plan of a machine. With `--as-printed`, reports whether the conditions hold in the form in which the
+/// paper prints them.
 pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
     let file = options.machine.display();
     let text = mdle_files::read_text(&options.machine, LARGEST_DATA)?;
@@ -67,8 +68,8 @@ fn print(file: &Path, plan: &str) -> Result<(), Failure> {
     }
 }
 
-/// Returns a report on the conditions as printed in the paper: whether they hold for a machine, and how they differ
-/// from the exact conditions.
+/// Returns a report on the conditions in the form in which the paper prints them. The report says whether they hold for
+/// a machine, and how they differ from the exact conditions.
 fn printed(machine: &Machine, exactly: &Answer) -> String {
     let mut text = String::new();
     if machine.states().len() <= SHOWN {
