@@ -9,9 +9,9 @@ use crate::launch::Loaded;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct StopPlace {
     source: SourceId,
-    /// Line of the start, from 0.
+    /// Line of the start, counted from 0.
     pub(crate) line: u32,
-    /// Column of the start, from 0.
+    /// Column of the start, counted from 0.
     pub(crate) column: u32,
     /// `true` for an operand of a condition, `false` for a scope, a loop or an atom.
     pub(crate) is_operand: bool,

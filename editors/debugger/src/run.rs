@@ -13,7 +13,7 @@ const MOST_COPIES: usize = 64;
 pub(crate) struct RunPosition {
     /// Number of steps from the start of the run.
     pub(crate) steps: u64,
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) turn: usize,
     /// Number of transitions that the turn has made so far.
     made: usize,

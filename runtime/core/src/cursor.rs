@@ -83,7 +83,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         scope.map_or(own, |(number, _)| number)
     }
 
-    /// Returns the number of the current state in the expanded plan, from 1; the termination state when the
+    /// Returns the number of the current state in the expanded plan, counted from 1; the termination state when the
     /// plan is over.
     pub fn state(&self, fsm: Fsm<'_>) -> u64 {
         let Some(atom) = fsm.atoms.get(self.atom as usize) else { return fsm.termination };

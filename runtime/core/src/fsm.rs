@@ -42,7 +42,7 @@ pub struct Bracket {
     pub kind: Kind,
     /// Index of the last atom of the bracket, in the order of the plan's text.
     pub first: u32,
-    /// Number of the last atom of the bracket, as written, from 0.
+    /// Number of the last atom of the bracket, as written, counted from 0.
     pub last: u32,
     /// Number of the enclosing bracket; the plan's own bracket is its own parent.
     pub parent: u32,
@@ -74,7 +74,7 @@ pub enum Kind {
 pub struct Atom {
     /// Number of the bracket that is the atom's own scope.
     pub scope: u32,
-    /// Number of the atom's state in the expanded plan, from 1, during the first pass of all enclosing loops.
+    /// Number of the atom's state in the expanded plan, counted from 1, during the first pass of all enclosing loops.
     pub state: u64,
 }
 

@@ -10,7 +10,7 @@ pub const TRANSITIONS_PER_TURN: u32 = 4096;
 /// A transition of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
-    /// Number of the state that was left, in the expanded plan, from 1.
+    /// Number of the state that was left, in the expanded plan, counted from 1.
     pub from: u64,
     /// Number of the bracket of the scope that ended.
     pub scope: u32,
@@ -18,7 +18,7 @@ pub struct Transition {
     pub cause: Cause,
     /// Index of the atom that was entered, in the order of the plan's text; `None` when the plan is over.
     pub atom: Option<u32>,
-    /// Number of the state that was entered, in the expanded plan, from 1.
+    /// Number of the state that was entered, in the expanded plan, counted from 1.
     pub to: u64,
 }
 

@@ -7,8 +7,8 @@ use crate::TextList;
 pub trait Words {
     /// Returns the line and the condition of a bracket; `None` for a plan without source text.
     fn bracket(&self, bracket: u32) -> Option<BracketWords<'_>>;
-    /// Returns the text and the line of operand `number`, from 0, in a bracket's condition; `None` if there is no such
-    /// operand.
+    /// Returns the text and the line of operand `number`, counted from 0, in a bracket's condition; `None` if there is
+    /// no such operand.
     fn operand(&self, bracket: u32, number: u32) -> Option<OperandWords<'_>>;
     /// Returns the name of the file that contains this line; an empty text if the file is not known.
     fn file(&self, at: SourceLine) -> &str;
@@ -47,7 +47,7 @@ pub struct Source<'a> {
 pub struct SourceLine {
     /// Number of the file in [`Source::files`].
     pub file: u16,
-    /// Number of the line, from 1.
+    /// Number of the line, counted from 1.
     pub line: u32,
 }
 

@@ -19,7 +19,7 @@ impl<'a> TextList<'a> {
         Self { joined, ends }
     }
 
-    /// Returns the text of this number, from 0; an empty text if the list has no such text.
+    /// Returns the text of this number, counted from 0; an empty text if the list has no such text.
     #[must_use]
     pub fn text(self, number: u32) -> &'a str {
         let end = |number: u32| self.ends.get(number as usize).map(|end| *end as usize);

@@ -27,7 +27,7 @@ pub(crate) struct Log {
 pub(crate) struct Entry<'a> {
     /// Texts of the plan.
     pub(crate) plan: &'a dyn Texts,
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) turn: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
@@ -41,7 +41,7 @@ pub(crate) struct Entry<'a> {
     pub(crate) frame: Option<Frame>,
     /// Transitions of the turn, in order.
     pub(crate) transitions: &'a Transitions,
-    /// Number of the plan, from 1.
+    /// Number of the plan, counted from 1.
     pub(crate) plan_number: u64,
     /// The supervisor's intervention in the turn.
     pub(crate) supervised: &'a Supervised,

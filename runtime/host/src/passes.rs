@@ -4,7 +4,7 @@
 use mdle_runtime::fsm::{Bracket, Kind};
 use mdle_runtime::{Fsm, Transition};
 
-/// Number of the current pass of each loop, from 1, indexed by the loop's bracket.
+/// Number of the current pass of each loop, counted from 1, indexed by the loop's bracket.
 #[derive(Debug, Default)]
 pub struct Passes(Vec<u64>);
 

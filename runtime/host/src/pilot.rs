@@ -82,7 +82,7 @@ pub struct Moment<'y, Y> {
     pub y: &'y Y,
     /// Time of the run at which the output was read; the first output is at time 0.
     pub t: Nanos,
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
 }
 
@@ -127,7 +127,7 @@ pub(crate) struct PlanAlone<'p, P: Plan> {
     /// Function that creates the plan.
     plan: &'p (dyn Fn() -> P + Sync),
     machine: Option<Machine<P>>,
-    /// Number of the current plan, from 1.
+    /// Number of the current plan, counted from 1.
     number: u64,
 }
 

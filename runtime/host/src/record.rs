@@ -46,11 +46,11 @@ pub(crate) struct RecordWriter<W = Outlet> {
 /// A turn, without the results of a plan.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct UnmadeTurn<'a> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) number: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
-    /// Number of the plan, from 1.
+    /// Number of the plan, counted from 1.
     pub(crate) plan: u64,
     /// The supervisor's intervention in the turn.
     pub(crate) supervised: &'a Supervised,

@@ -20,7 +20,7 @@ pub struct RobotRecord(RecordWriter<RecordFile<File>>);
 
 /// A turn, for the record of a robot.
 pub struct RobotTurn<'a> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
     /// Time of the turn.
     pub t: Nanos,

@@ -38,7 +38,7 @@ struct Entry {
 /// The current turn of a run.
 #[derive(Debug)]
 pub(crate) struct WatchedRun {
-    /// Number of the turn, from 1; 0 between two turns.
+    /// Number of the turn, counted from 1; 0 between two turns.
     turn: AtomicU64,
     time: Time,
     work: Work,
@@ -65,7 +65,7 @@ pub fn at_work(module: Option<&Arc<str>>) {
 /// A turn that did not end in time.
 #[derive(Debug, PartialEq, Eq)]
 struct Hung {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     turn: u64,
     /// Module whose code has not returned, if it is known.
     module: Option<Arc<str>>,

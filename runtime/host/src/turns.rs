@@ -71,7 +71,7 @@ struct OnePlan<'t, 'a, 'o> {
     transitions: Transitions,
     /// `true` if no law has been applied since the current atom was entered.
     fresh: bool,
-    /// Number of the current plan, from 1; a supervisor may replace the plan.
+    /// Number of the current plan, counted from 1; a supervisor may replace the plan.
     plan: u64,
     /// The supervisor's intervention in the last turn.
     supervised: Supervised,
@@ -265,9 +265,9 @@ impl Witnesses<'_, '_> {
 #[derive(Debug, Clone, Copy)]
 struct MadeTurn {
     turn: Turn<()>,
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     number: u64,
     t: Nanos,
-    /// Number of the plan that made the turn, from 1.
+    /// Number of the plan that made the turn, counted from 1.
     plan: u64,
 }

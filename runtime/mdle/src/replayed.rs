@@ -26,7 +26,7 @@ pub(crate) enum ReplayOutcome {
 /// The first turn that differs from the record.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Difference {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) turn: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,

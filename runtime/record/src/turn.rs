@@ -10,7 +10,7 @@ use crate::{Change, Constants, Overruled};
 /// A turn of a current run, without its output.
 #[derive(Debug, Clone, Copy)]
 pub struct TurnMade<'a> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
     /// Time of the turn in the run.
     pub t: Nanos,
@@ -40,7 +40,7 @@ pub(crate) enum Undecoded {
 /// A turn of a recorded run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedTurn {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
     /// Time of the turn in the run.
     pub t: Nanos,

@@ -55,7 +55,7 @@ pub(crate) struct Exchange {
 
 /// A turn of a run that has been made, and its result.
 pub(crate) struct Made {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) number: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,

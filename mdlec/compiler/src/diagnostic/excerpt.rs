@@ -38,7 +38,7 @@ struct Lines {
 /// A line of a file, or the shown parts of it.
 #[derive(Debug)]
 struct ExcerptLine {
-    /// Number of the line in its file, from 0.
+    /// Number of the line in its file, counted from 0.
     index: usize,
     /// Byte range of the line in the excerpt.
     range: Range<usize>,

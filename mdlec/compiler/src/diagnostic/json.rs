@@ -20,7 +20,7 @@ pub struct Message<'a> {
     pub help: Vec<&'a str>,
 }
 
-/// A place in a file. Lines and columns count from 1, columns in characters; the end is after the last character.
+/// A place in a file. Lines and columns are counted from 1, columns in characters; the end is after the last character.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FileRange<'a> {
     /// Name of the file that contains the place.

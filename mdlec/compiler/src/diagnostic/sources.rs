@@ -24,7 +24,7 @@ struct File {
     shown: Option<PrintableFile>,
 }
 
-/// A place with its line and column. Here, both count from 1.
+/// A place with its line and column. Here, both are counted from 1.
 #[derive(Debug, Clone, Copy)]
 struct LineAndColumn {
     source: SourceId,
@@ -80,7 +80,7 @@ impl Sources {
         (source, span.within(source))
     }
 
-    /// Returns the line and the column of a byte; both count from 1, and columns count characters.
+    /// Returns the line and the column of a byte; both are counted from 1, and columns count characters.
     ///
     /// If the byte is in the same line as the place that was looked up last, the search starts from that place, because
     /// a file may consist of one line with a mistake in every word.
@@ -104,8 +104,8 @@ impl Sources {
         Some(LineAndColumn { source, byte, line, column })
     }
 
-    /// Returns the name of the file that contains a span, and the number of the line in which the span begins, from 1;
-    /// 0 if the line is not known.
+    /// Returns the name of the file that contains a span, and the number of the line in which the span begins, counted
+    /// from 1; 0 if the line is not known.
     #[must_use]
     pub fn line(&self, span: Span) -> (&str, usize) {
         let (source, range) = self.range(span);

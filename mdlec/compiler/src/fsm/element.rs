@@ -246,7 +246,7 @@ impl<'m> Atom<'m> {
         Element::new(self.tables, self.tables.atoms[self.index()].scope)
     }
 
-    /// Returns the number of the atom's state, from 1, in the first pass of all loops.
+    /// Returns the number of the atom's state, counted from 1, in the first pass of all loops.
     #[must_use]
     pub fn state(self) -> u64 {
         self.tables.atoms[self.index()].state

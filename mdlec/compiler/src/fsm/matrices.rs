@@ -63,7 +63,7 @@ pub struct Transition<'p> {
 }
 
 /// A transition matrix of size `N` by `N`. It equals the identity matrix, except for some neighboring columns that have
-/// their 1 in the same row. Columns and rows count from 0.
+/// their 1 in the same row. Columns and rows are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Matrix {
     first: usize,
@@ -131,9 +131,9 @@ struct Bracket<'p> {
     around: Option<usize>,
     /// Labels of the elements that end together with the bracket.
     marks: &'p [Mark],
-    /// First state of the bracket, from 0.
+    /// First state of the bracket, counted from 0.
     first: usize,
-    /// Last state of the bracket, from 0.
+    /// Last state of the bracket, counted from 0.
     last: usize,
     /// Index of the bracket's first interrupt.
     begins: usize,

@@ -165,7 +165,7 @@ impl<'p> MatrixProduct<'p> {
         self.risen.extend(set);
     }
 
-    /// Returns the number of the state, from 1.
+    /// Returns the number of the state, counted from 1.
     fn state(&self) -> u64 {
         self.e.row as u64 + 1
     }

@@ -17,7 +17,7 @@ use crate::plan::{Plan, Words};
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Script {
     turns: Vec<Reports>,
-    /// Line number of each turn, from 1.
+    /// Line number of each turn, counted from 1.
     lines: Vec<usize>,
 }
 
@@ -81,7 +81,7 @@ impl Reports {
 /// An error in a script.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScriptError {
-    /// Line number, from 1.
+    /// Line number, counted from 1.
     pub line: usize,
     /// Description of the error.
     pub message: String,

@@ -205,7 +205,7 @@ impl<'p> TableMachine<'p> {
         set.into_iter().for_each(|(row, memory)| self.memories[row].rising[memory] = true);
     }
 
-    /// Returns the number of the current state, from 1.
+    /// Returns the number of the current state, counted from 1.
     fn number(&self) -> u64 {
         self.state as u64 + 1
     }

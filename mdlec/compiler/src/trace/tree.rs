@@ -52,7 +52,7 @@ struct Open {
     entered: EntryTime,
     /// Index of the open nested element within the body.
     index: usize,
-    /// For a loop, the number of the current pass, from 1.
+    /// For a loop, the number of the current pass, counted from 1.
     pass: u64,
     /// Number of the first state in the current pass.
     first: u64,

@@ -11,7 +11,7 @@ pub type Fired<'p> = trace::Fired<'p, Vec<String>>;
 /// Result of a turn, with the number and time of the turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceLine<'p> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub turn: usize,
     /// Time of the turn.
     pub t: Nanos,

@@ -13,7 +13,7 @@ pub struct State {
     pub name: String,
     /// Session of the robot, which is a random number for its run; 0 if all robots run in one process.
     pub session: u64,
-    /// Number of the state, from 1. Within a session, states with higher numbers were sent later.
+    /// Number of the state, counted from 1. Within a session, states with higher numbers were sent later.
     pub number: u64,
     /// Age of the state on arrival. The minimum transmission time of the source is not included, because it is unknown.
     pub age: Nanos,

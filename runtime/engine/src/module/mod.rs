@@ -57,7 +57,7 @@ pub struct Fault(pub String);
 /// Data of one turn of the engine, passed to a module.
 #[derive(Debug)]
 pub struct Turn<'t, Y> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
     /// Time of the turn on the engine's clock; zero in the first turn.
     pub now: Nanos,

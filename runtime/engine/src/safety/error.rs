@@ -5,7 +5,7 @@ use std::fmt;
 /// Reason why a text is not a valid safety file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RulesError {
-    /// Line of the file, from 1.
+    /// Line of the file, counted from 1.
     pub line: usize,
     /// Sentence that says what to write instead.
     pub message: String,

@@ -35,7 +35,7 @@ pub struct Rules {
 pub struct PlanEntry {
     /// File of the plan, as written in the safety file.
     pub file: String,
-    /// Line of the safety file, from 1, that first names the plan.
+    /// Line of the safety file, counted from 1, that first names the plan.
     pub line: usize,
 }
 
@@ -72,7 +72,7 @@ pub struct Guard {
 pub struct Condition {
     /// Text in the plan language.
     pub text: String,
-    /// Line of the text, from 1.
+    /// Line of the text, counted from 1.
     pub line: usize,
     /// Byte range of the text in the safety file. If the text contains escape sequences, this is the range of the whole
     /// value.

@@ -145,8 +145,8 @@ impl<'t, 'i> Section<'t, 'i> {
         RulesError { line: line(self.text, place.span().start), message }
     }
 
-    /// Returns the line of a value, from 1, and the byte range of its text. If the text contains escape sequences, this
-    /// is the range of the whole value.
+    /// Returns the line of a value, counted from 1, and the byte range of its text. If the text contains escape
+    /// sequences, this is the range of the whole value.
     pub(super) fn place(self, span: &Range<usize>, text: &str) -> (usize, Range<usize>) {
         let start = self.text.get(span.clone()).and_then(|value| value.find(text)).map(|before| span.start + before);
         let bytes = start.map_or_else(|| span.clone(), |start| start..start + text.len());
@@ -154,7 +154,7 @@ impl<'t, 'i> Section<'t, 'i> {
     }
 }
 
-/// Returns the line number of a byte offset, from 1.
+/// Returns the line number of a byte offset, counted from 1.
 pub(super) fn line(text: &str, place: usize) -> usize {
     text.bytes().take(place).filter(|byte| *byte == b'\n').count() + 1
 }

@@ -25,7 +25,7 @@ pub trait Lines {
 /// A line, or the reason why there is no line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Typed {
-    /// A line with its number, from 1.
+    /// A line with its number, counted from 1.
     Line(usize, String),
     /// A line that cannot be used: its number, and a sentence with the reason.
     Unusable(usize, String),

@@ -15,7 +15,7 @@ pub(super) struct Snapshot {
     pub(super) tree: Arc<Tree>,
     /// Values in the order of the nodes; the value is `None` for a method, and for an attribute that has no value yet.
     pub(super) values: Vec<Option<Value>>,
-    /// Number of the snapshot, from 1.
+    /// Number of the snapshot, counted from 1.
     pub(super) number: u64,
 }
 

@@ -30,7 +30,7 @@ const COLUMNS: [Column; 3] = [
     Column { name: "speed", units: [("cm/s", 0.01), ("m/s", 1.0)] },
 ];
 
-/// An error in a path: its line and column, from 1, and the message.
+/// An error in a path: its line and column, counted from 1, and the message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TextFault {
     pub(super) place: Option<(usize, usize)>,

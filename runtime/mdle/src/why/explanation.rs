@@ -68,7 +68,7 @@ pub(crate) struct Replaced {
 /// The explanation of a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Explanation {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) turn: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,

@@ -98,7 +98,7 @@ impl<'t, 'p> OpenPart<'t, 'p> {
         self.open.entered.way_since(reports)
     }
 
-    /// Returns the number of a loop's current pass, from 1.
+    /// Returns the number of a loop's current pass, counted from 1.
     #[must_use]
     pub fn pass(self) -> u64 {
         self.open.pass

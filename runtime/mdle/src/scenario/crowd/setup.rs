@@ -72,8 +72,8 @@ impl CrowdSetup {
         })
     }
 
-    /// Creates a record for each robot of the crowd. The name of the record contains the robot's number, which counts
-    /// from 1. `command` is the command that repeats the run.
+    /// Creates a record for each robot of the crowd. The name of the record contains the robot's number, which is
+    /// counted from 1. `command` is the command that repeats the run.
     ///
     /// # Errors
     /// Fails with a message if there are too many robots, or if a record cannot be written; in this case, the records

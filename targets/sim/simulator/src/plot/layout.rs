@@ -91,7 +91,7 @@ impl Layout {
         self.height - MARGIN - BELOW
     }
 
-    /// Returns the vertical middle of a line of the legend; lines count from 0.
+    /// Returns the vertical middle of a line of the legend; lines are counted from 0.
     pub(super) fn line(&self, number: usize) -> f64 {
         self.top + LINE * (number as f64 + 0.5)
     }
