@@ -21,16 +21,16 @@ const PERSON: f64 = 0.25;
 /// Distance, in metres, that the robot leaves between a person and its body, because the direction of an echo within
 /// the cone of its sonar is not known.
 const CLEAR: f64 = 0.2;
-/// Minimum distance, in metres, between a person and the robot's way at which the robot backs off. Echoes of the rough
-/// walls of a hallway, whose ranges may decrease by chance, are nearer.
+/// The robot backs off only from a person who is at least this far, in metres, from its way. Echoes of the rough walls
+/// of a hallway, whose ranges may decrease by chance, are nearer.
 const FAR: f64 = 1.2;
-/// Maximum time, in seconds, until a person reaches the robot's way at which the robot backs off.
+/// The robot backs off only from a person who will reach its way within this time, in seconds.
 const BACK: f64 = 5.0;
-/// Minimum distance, in metres, of a crossing person from the way. A person nearer to the way is an obstacle, or walks
+/// Minimum distance, in metres, between a crossing person and the way. A person nearer to the way is an obstacle, or walks
 /// along the way.
 const ASIDE: f64 = 0.45;
-/// Maximum time, in seconds, until a person reaches the robot's way at which the robot reacts. A sonar that pings once
-/// a second takes two seconds until three pings agree, and the direction of its echoes is uncertain by several degrees.
+/// The robot reacts only to a person who will reach its way within this time, in seconds. A sonar that pings once a
+/// second takes two seconds until three pings agree, and the direction of its echoes is uncertain by several degrees.
 /// A robot that stops later may already be where the person walks.
 const SOON: f64 = 8.0;
 

@@ -50,7 +50,7 @@ pub struct Pursuing {
 }
 
 impl Pursuing {
-    /// Returns the leader's state while it is fresh; `None` otherwise.
+    /// Returns the leader's state if it is fresh; `None` if it is stale or not known.
     fn leader<'y, Y: StateLink>(&self, y: &'y Y) -> Option<&'y PeerState> {
         y.peer(self.robot)?.fresh()
     }

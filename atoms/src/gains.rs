@@ -100,7 +100,7 @@ impl Gains {
     }
 }
 
-/// Returns `true` if sonars fire one after the other, so that ranges are older.
+/// Returns `true` if sonars fire one after the other. Their ranges are then older.
 pub(crate) fn fire_in_turn<Y: SonarRing>(y: &Y) -> bool {
     y.confirmation() < PINGS_KEPT
 }

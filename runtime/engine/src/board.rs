@@ -1,4 +1,4 @@
-//! The board, which contains the last value of every attribute of every module and changes only at turn breaks.
+//! The board, which contains the last value of every attribute of every module and changes only between turns.
 //! Positions on the board are fixed when modules are loaded or unloaded, so no turn has to look up names.
 
 use std::sync::Arc;

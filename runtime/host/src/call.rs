@@ -63,8 +63,8 @@ impl Call {
         self.words.iter().take(1).chain(&self.options)
     }
 
-    /// Returns the words in the form in which a user types them in a shell; the name of the plan if the program was
-    /// called without a name.
+    /// Returns the words in the form in which a user types them in a shell. If the program was called without a name,
+    /// returns the name `plan` of the plan.
     pub(crate) fn command(&self, plan: &str) -> String {
         let words: Vec<String> = self.words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
         if words.is_empty() { quoted(plan) } else { words.join(" ") }

@@ -34,7 +34,7 @@ pub(crate) struct Surroundings<'e, I, O> {
 pub(crate) struct RunSettings<'a> {
     /// Plan's name and version.
     pub(crate) program: Program<'a>,
-    /// Words by which the program was called.
+    /// Words with which the program was called.
     pub(crate) call: &'a Call,
     /// All options, including the target's own options.
     pub(crate) matches: &'a ArgMatches,
@@ -49,7 +49,7 @@ impl RunSettings<'_> {
     }
 }
 
-/// Data of the plan that the options determine.
+/// Data of the plan, as far as the options determine them.
 pub(crate) struct PlanData {
     /// Paths that the plan can replay.
     pub(crate) store: PathStore,

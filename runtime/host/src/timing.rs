@@ -17,8 +17,8 @@ const BOUNDS: [u64; 19] = {
     bounds
 };
 
-/// Number of consecutive turns longer than the period after which a run ends, because the robot receives its commands
-/// too late.
+/// Number of consecutive turns, each longer than the period, after which a run ends because the robot receives its
+/// commands too late.
 const LIMIT: u32 = 10;
 
 /// Lateness and duration of a run's turns.

@@ -93,7 +93,7 @@ pub(crate) struct RunArguments {
     pub(crate) head: f64,
     /// The map to create; `None` if no map is requested.
     pub(crate) map: Option<MapOption>,
-    /// `true` if warnings count as errors.
+    /// `true` if warnings are treated as errors.
     pub(crate) deny_warnings: bool,
     /// Program name and arguments of this call, without the options of the run.
     pub(crate) words: Vec<OsString>,

@@ -111,7 +111,7 @@ pub struct Param {
     /// Unit that is assumed for a bare number (a number that is written without a unit). This is the base unit of the
     /// kind, unless the alphabet declares another unit; `None` if the kind has no unit.
     pub unit: Option<Unit>,
-    /// Default value as written, in the unit that is assumed for a bare number.
+    /// Default value as written, in the unit of a number that is written without a unit.
     pub default: Option<String>,
     /// Minimum and maximum value, in the unit that is assumed for a bare number.
     pub range: Option<(f64, f64)>,

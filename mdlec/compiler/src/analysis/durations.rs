@@ -83,8 +83,8 @@ pub(super) fn longest(machine: &Machine, found: &[BracketFacts], most: Most) -> 
     Longest::NONE
 }
 
-/// Adds to `longest` the turns of searches for the next atom that exceed the limit of transitions in a turn. Each such
-/// turn makes the maximum number of transitions, and each transition leads to another state.
+/// Adds to `longest` the turns in which a search for the next atom stops at the limit of transitions in a turn. Each
+/// such turn makes the maximum number of transitions, and each transition leads to another state.
 fn searched(longest: Longest, machine: &Machine, most: Most) -> Longest {
     match longest {
         Longest::Bounded { nanos, turns } if most.is_cut => {

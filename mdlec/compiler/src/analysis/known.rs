@@ -14,7 +14,8 @@ use crate::fsm::Machine;
 use crate::plan::families::{Family, Readings, family};
 use crate::plan::{Condition, QuarkId};
 
-/// Maximum number of conditions of enclosing scopes that are considered for each variable of a question.
+/// Maximum number of conditions that are considered for each variable of a question. These are conditions of enclosing
+/// scopes.
 const CLAUSES: usize = 8;
 
 /// A question about conditions: is it possible that at least one of the conditions has fired (if `fired` is `true`), or

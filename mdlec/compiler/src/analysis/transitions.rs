@@ -80,7 +80,8 @@ impl Chains {
         }
     }
 
-    /// Returns the chains of `times` passes of `self`; 0 passes mean an endless loop.
+    /// Returns the chains of a loop with `times` passes, where `self` contains the chains of one pass; 0 passes mean an
+    /// endless loop.
     fn times(self, times: u64) -> Self {
         let through = |passes: u64| self.pass.map_or(0, |pass| pass.saturating_mul(passes));
         let again = |passes: u64| self.last.map_or(0, |last| last.saturating_add(through(passes)));

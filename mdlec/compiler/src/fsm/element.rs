@@ -265,7 +265,7 @@ impl<'m> Atom<'m> {
     }
 
     /// Returns the angle, in radians, by which the atom's frame is turned. It is relative to the innermost enclosing
-    /// `FRAME here`; without one, it is relative to the plan's frame.
+    /// `FRAME here`; if there is none, it is relative to the plan's frame.
     #[must_use]
     pub fn frame(self) -> f64 {
         self.tables.laws[self.index()].frame

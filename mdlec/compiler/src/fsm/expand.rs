@@ -14,8 +14,8 @@ const TEXT: u64 = 1 << 26;
 /// Returns the plan with its finite loops written out; loops without end are unchanged.
 ///
 /// # Errors
-/// Fails with E0501 for a plan that cannot be lowered; E0502 for a plan with more than 100,000 states, or with too many
-/// conditions or too much text in these states.
+/// Fails with E0501 for a plan that cannot be converted to a state machine. Fails with E0502 for a plan with more than
+/// 100,000 states, or with too many conditions or too much text in these states.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
     expands(plan)?;
     Ok(plan.map(expand_scope))
@@ -51,7 +51,8 @@ pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
 /// Returns the number of states, including the termination state, of a plan with its finite loops written out.
 ///
 /// # Errors
-/// Fails with E0501 for a plan that cannot be lowered, E0502 for a plan with more than 100,000 states.
+/// Fails with E0501 for a plan that cannot be converted to a state machine, and with E0502 for a plan with more than
+/// 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
     let count = Count { unit: "states", of: |part| u64::from(part.atom().is_some()) };
     let expanded = Expanded::of(PlanPart::Scope(&plan.plan().root), &count, true);

@@ -20,7 +20,7 @@ pub struct LoadedPlan<A: Alphabet> {
     has_stamps: bool,
 }
 
-/// The moments of a plan that were observed.
+/// The observed moments of a plan.
 struct LookedAt<A: Alphabet> {
     loaded: Arc<Loaded<A>>,
     machine: Arc<Machine>,

@@ -115,7 +115,7 @@ pub fn signature(declaration: &Declaration) -> String {
     text
 }
 
-/// Converts a number to a value in the unit `unit`, with the text of the value in this unit; error messages name
+/// Converts a number to a value in the unit `unit`, and adds the text of the value in this unit. Error messages name
 /// `declaration`. A number that is written without a unit has the unit `bare`.
 pub(super) fn value(number: &Number, bare: Unit, unit: Unit, declaration: &Declaration) -> Fitted {
     let param = Param {

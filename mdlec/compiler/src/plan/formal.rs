@@ -124,8 +124,8 @@ fn interrupt(interrupt: &Interrupt) -> String {
     }
 }
 
-/// Returns the text of the condition with nested ORs as written, because `after` refers to the operands of the
-/// outermost OR.
+/// Returns the text of the condition. Nested ORs appear in it as they were written, because `after` refers to the
+/// operands of the outermost OR.
 fn in_parentheses(interrupt: &Interrupt) -> &str {
     interrupt.nested.as_deref().unwrap_or(&interrupt.text)
 }

@@ -366,7 +366,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// Resolves a loop count, which is at least one pass; `None` for an endless loop.
+    /// Resolves the number of passes of a loop, which is at least 1; returns `None` for an endless loop.
     fn count(&mut self, count: &Count) -> Option<u64> {
         let number = match count {
             Count::Infinity(_) => return None,

@@ -127,7 +127,7 @@ impl<'s> Build<'_, 's> {
         Some(owned.map_or(Owner::One(0), |owned| owned.owner))
     }
 
-    /// Projects a condition for this robot.
+    /// Converts a condition of the group to the condition for this robot.
     fn read(&mut self, condition: &Condition<'s>, place: ConditionContext, robot: usize) -> Condition<'s> {
         let span = condition.span;
         let node = match condition.node {

@@ -89,7 +89,7 @@ pub(super) fn read<'s>(call: &Call<'s>, build: &mut Build<'_, 's>) -> Option<For
     Some(Formation { first, others: slots.collect() })
 }
 
-/// Returns `true` if these arguments of `goAvoid` fit the parameters of `lead` after the width.
+/// Returns `true` if these arguments of `goAvoid` fit the parameters of `lead` that follow the width.
 fn fit(args: &[Arg<'_>], alphabet: &Alphabet) -> bool {
     let fits = |arg: &Arg<'_>, param: &Param| match arg {
         Arg::Number(number) => {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use logos::{Lexer, Logos};
 
-/// A part of a label. The lexer of plans does not contain these parts, because they would make it several times as
+/// A part of a label. These parts are not in the lexer of plans, because they would make that lexer several times as
 /// large.
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {

@@ -10,7 +10,7 @@ const KNOWN: usize = 64;
 /// Maximum number of answers to one plan: one when the plan waits to take over, one when it begins, and one more.
 const MOST: u8 = 3;
 
-/// The sent plans that are kept, oldest first.
+/// The plans that were sent last, oldest first; at most `KNOWN` plans.
 #[derive(Debug, Default)]
 pub(super) struct Questions(VecDeque<Question>);
 

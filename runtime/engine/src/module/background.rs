@@ -190,8 +190,8 @@ impl Gate {
         self.changed.notify_all();
     }
 
-    /// Takes the values of a module that waits for a turn break; `None` if the module does not wait. Never blocks: if
-    /// the module holds the lock, it is served at the next turn break.
+    /// Removes and returns the values of a module that waits for a turn break; `None` if the module does not wait.
+    /// Never blocks: if the module holds the lock, it is served at the next turn break.
     pub(crate) fn take_offer(&self) -> Option<Ports> {
         self.meeting.try_lock().ok()?.offered.take()
     }

@@ -44,8 +44,8 @@ struct State<A: EngineAlphabet> {
 }
 
 impl<A: EngineAlphabet> Compiler<A> {
-    /// Passes an order to the compiler. An order with a plan to take over cancels and returns earlier orders of this
-    /// type that still wait; however, an order of another robot does not cancel an order of the operator.
+    /// Passes an order to the compiler. An order to replace the plan cancels and returns earlier orders of this type
+    /// that still wait. However, an order of another robot does not cancel an order of the operator.
     ///
     /// # Errors
     /// Fails with a sentence if too many orders wait.
@@ -131,7 +131,7 @@ impl<A: EngineAlphabet> State<A> {
         [self.take_back_own(), self.sent.take()]
     }
 
-    /// Removes and returns the operator's waiting order with a plan to take over; `None` if no such order waits.
+    /// Removes and returns the operator's waiting order to replace the plan; `None` if no such order waits.
     fn take_back_own(&mut self) -> Option<Order<A>> {
         let place = self.waiting.iter().position(|order| order.task.takes_over())?;
         self.waiting.remove(place)

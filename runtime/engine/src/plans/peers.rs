@@ -1,4 +1,5 @@
-//! Requests from other robots that a plan take over. They are refused after a safety rule has replaced or ended a plan.
+//! Handles the requests of other robots that a new plan replace the current plan. They are refused after a safety rule
+//! has replaced or ended a plan.
 
 use super::PlanEvent;
 

@@ -22,7 +22,7 @@ pub struct StoredPlan<A: EngineAlphabet> {
     pub facts: PlanFacts,
 }
 
-/// Facts about a plan as text for the operator; an unknown text is empty.
+/// Texts with facts about a plan, for the operator. The text of an unknown fact is empty.
 #[derive(Debug, Clone, Default)]
 pub struct PlanFacts {
     /// Warnings about the plan's file; if there are no warnings, a sentence that says so.

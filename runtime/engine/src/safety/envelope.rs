@@ -178,8 +178,8 @@ impl Envelope {
         &self.rules
     }
 
-    /// Returns the rules for writing; changes apply from the next turn on. The numbers of guards and fences must not
-    /// change.
+    /// Returns the rules so that they can be changed; changes apply from the next turn on. The numbers of guards and
+    /// fences must not change.
     pub fn rules_mut(&mut self) -> &mut Rules {
         &mut self.rules
     }

@@ -14,7 +14,7 @@ use crate::module::{About, PLAN, Refusal};
 use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
 
-/// Node of the tree that shows the time that a module's turns take.
+/// Node of the tree that shows how much time the turns of a module take.
 pub(super) const COST: (&str, Node) = (
     ".cost",
     Node::reading(

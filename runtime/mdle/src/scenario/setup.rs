@@ -347,7 +347,7 @@ fn recorded(text: &At<String>, replayed: &[&'static str]) -> Result<&'static str
     })
 }
 
-/// Reads the paths that a plan replays. A path that is recorded may be missing.
+/// Reads the paths that a plan replays. The file of a path that the run records may be missing.
 fn paths(
     text: &RobotText,
     files: &Files,

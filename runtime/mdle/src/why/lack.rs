@@ -98,7 +98,7 @@ fn meeting(part: Examined, since: Nanos) -> String {
     }
 }
 
-/// Returns the time or the margin, in words, for which a fired operand remains fired; empty if it is not known.
+/// Returns, in words, how much longer or further a fired operand remains fired; empty if this is not known.
 pub(crate) fn held(condition: &Condition, part: Examined, values: &Values<'_>) -> String {
     let Values { since, way, .. } = *values;
     match condition {

@@ -27,7 +27,8 @@ pub(crate) struct Never {
     pub(crate) began: Option<Beginnings>,
     /// `true` if the element ran in the last turn.
     pub(crate) runs: bool,
-    /// Turns since the element last began in which it was entered and left immediately; `None` if there are none.
+    /// Turns in which the element was entered and left immediately, after the turn in which it last began; `None` if
+    /// there are none.
     pub(crate) skipped: Option<Skips>,
     /// Opportunities of the element to begin since it last began; `None` if there were none.
     pub(crate) chance: Option<Chance>,
@@ -197,7 +198,7 @@ fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> R
 /// The search for elements in one of the plans of a record.
 struct Search {
     plan: Rc<ExaminedPlan>,
-    /// Numbers of the elements in question.
+    /// Numbers of the elements about which the question is asked.
     wanted: Vec<u32>,
     /// Time at which each element in question last began.
     entries: BTreeMap<u32, Nanos>,

@@ -175,8 +175,8 @@ impl Body {
         Obstacle::Wall { forward, turns }
     }
 
-    /// Returns `true` if the body at `there` overlaps no obstacle. Its points have moved by at most `way` metres to get
-    /// there.
+    /// Returns `true` if the body at `there` overlaps no obstacle. To get there, each point of the body has moved by at
+    /// most `way` metres.
     fn is_free(&mut self, there: &Pose, way: f64, walls: &Walls) -> bool {
         let body = Footprint { pose: *there, form: self.drive.form };
         if walls.moving_gap(&body) < 0.0 {

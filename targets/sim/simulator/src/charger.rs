@@ -17,8 +17,8 @@ pub struct Charger {
 }
 
 impl Charger {
-    /// Returns `true` if a robot at `pose` is on the charger. It must be within reach, and its heading must deviate by
-    /// at most 15 degrees.
+    /// Returns `true` if a robot at `pose` is on the charger. The robot must be within the reach of the charger, and
+    /// its heading must deviate by at most 15 degrees.
     #[must_use]
     pub fn holds(&self, pose: &Pose) -> bool {
         let off = Radians(pose.theta.0 - self.pose.theta.0).wrapped();
