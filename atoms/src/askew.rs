@@ -63,7 +63,7 @@ fn is_near<Y: SonarRing>(y: &Y, range: Meters) -> bool {
 }
 
 /// Returns `true` if the two newest pings in the direction of `beside` show only objects that are further away than a
-/// straight wall would be that faces the robot in the direction `diagonal` at this range.
+/// straight wall at this range that faces the robot in the direction `diagonal`.
 fn runs_off<Y: SonarRing>(y: &Y, diagonal: SonarId, range: Meters, beside: SonarId) -> bool {
     let ring = y.ring_radius().0;
     let angle = |sonar: SonarId, ping: &Ping| off(y, diagonal, sonar, ping).0.abs();

@@ -26,8 +26,8 @@ const CLEAR: f64 = 0.2;
 const FAR: f64 = 1.2;
 /// The robot backs off only from a person who will reach its way within this time, in seconds.
 const BACK: f64 = 5.0;
-/// Minimum distance, in metres, between a crossing person and the way. A person nearer to the way is an obstacle, or walks
-/// along the way.
+/// Minimum distance, in metres, between a crossing person and the way. A person nearer to the way is an obstacle, or
+/// walks along the way.
 const ASIDE: f64 = 0.45;
 /// The robot reacts only to a person who will reach its way within this time, in seconds. A sonar that pings once a
 /// second takes two seconds until three pings agree, and the direction of its echoes is uncertain by several degrees.

@@ -10,7 +10,7 @@ const WIDE: Meters = Meters(0.3);
 /// Parameters of the laws that differ from body to body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Gains {
-    /// `align`: maximum turn rate, in rad/s. Where sonars fire in turn, the ranges are older.
+    /// `align`: maximum turn rate, in rad/s. It is lower where sonars fire in turn, because the ranges are older there.
     pub(crate) align_fastest: f64,
     /// `align`: maximum difference, in metres, at which ranges are treated as equal. A difference of 8 mm corresponds
     /// to 2° in a hallway 1.5 m wide, for sonars with a cone of 25°. Where sonars fire in turn, the value is an inch,

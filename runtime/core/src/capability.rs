@@ -47,19 +47,19 @@ pub trait DiffDrive: Output {
     }
 }
 
-/// Steering gains of the laws (the factor `k` of each law): turn rate per remaining error (paper, section IV-A).
+/// Steering gains of the laws: the factor `k` between the remaining error and the turn rate (paper, section IV-A).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steering {
-    /// `rotate`, `turn` and `path`: in rad/s for each radian still to turn.
+    /// Gain of `rotate`, `turn` and `path`, in rad/s for each radian that is still to turn.
     pub rotate: f64,
-    /// `align`: in rad/s for each metre by which the ranges differ.
+    /// Gain of `align`, in rad/s for each metre by which the ranges differ.
     pub align: f64,
-    /// `goAvoid`: in rad/s for each radian off the direction chosen.
+    /// Gain of `goAvoid`, in rad/s for each radian between the heading and the chosen direction.
     pub avoid: f64,
 }
 
 impl Steering {
-    /// The usual gains. With these gains, `rotate` demands at most 1.6 rad/s², in its fastest turn. A Scout's wheels
+    /// The usual gains. With these gains, `rotate` requires at most 1.6 rad/s², in its fastest turn. A Scout's wheels
     /// can do more than three times that, and an ATRV-mini's limits were set to 1.55 and 2.
     pub const USUAL: Self = Self { rotate: 2.0, align: 2.0, avoid: 2.0 };
 }

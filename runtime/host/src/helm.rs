@@ -121,7 +121,7 @@ where
         &self.pilot
     }
 
-    /// Returns the pilot for writing, for changes between two turns.
+    /// Returns the pilot, so that it can be changed between two turns.
     pub fn pilot_mut(&mut self) -> &mut B {
         &mut self.pilot
     }
@@ -132,7 +132,7 @@ where
         supervised.as_mut().map(|supervised| (&mut *supervised.supervisor, pilot, &*input))
     }
 
-    /// Returns the supervisor for writing, for changes between two turns; `None` if there is no supervisor.
+    /// Returns the supervisor, so that it can be changed between two turns; `None` if there is no supervisor.
     pub fn supervisor_mut(&mut self) -> Option<&mut (dyn Supervisor<B> + 'p)> {
         self.supervised.as_mut().map(|supervised| &mut *supervised.supervisor)
     }

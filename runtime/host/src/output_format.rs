@@ -1,4 +1,4 @@
-//! Checks the names of output files. If a name has an ending, it must be the ending of the option's format.
+//! Checks the names of output files. If a name has an extension, it must be the extension of the option's format.
 
 use std::path::{Path, PathBuf};
 

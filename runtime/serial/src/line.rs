@@ -24,7 +24,7 @@ pub struct Line {
     port: OwnedFd,
 }
 
-/// Error of a connection to a robot: it cannot be opened, or reading or writing failed.
+/// Error of a connection to a robot. The connection cannot be opened, or reading or writing failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LineFault {
     /// A device cannot be opened. Contains the name of the device, and the reason.

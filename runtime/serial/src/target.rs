@@ -43,7 +43,7 @@ pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal
     /// Returns the time that the line needs to transmit the data of a turn.
     fn turn_takes(config: &Self::Config) -> Duration;
 
-    /// Returns the timeout for an answer, in milliseconds, for writing.
+    /// Returns the timeout for an answer, in milliseconds, so that it can be changed.
     fn answer(config: &mut Self::Config) -> &mut u64;
 
     /// Checks that the watchdog's timeout is longer than the time between two commands. Called if turns follow the

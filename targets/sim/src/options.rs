@@ -246,7 +246,7 @@ pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
     }
 }
 
-/// Returns the given options that apply to every run of a batch, as words of a command.
+/// Returns the options that were given and apply to every run of a batch, as words of a command.
 pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
     let names = matches.ids().map(|id| id.as_str()).filter(|name| !OF_SEVERAL.contains(name));
     let given = names.filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine));

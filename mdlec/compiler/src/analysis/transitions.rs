@@ -27,7 +27,7 @@ pub(super) struct Most {
 pub(super) fn most(machine: &Machine) -> Most {
     /// Maximum number of quarks for which every choice is counted.
     const QUARKS: usize = 8;
-    /// Maximum product of the number of brackets and the number of choices for which every choice is counted.
+    /// Maximum product of the number of brackets and the number of choices up to which every choice is counted.
     const WORK: usize = 2_000_000;
     let mut quarks: Vec<QuarkId> = Vec::new();
     for element in machine.elements() {

@@ -218,7 +218,7 @@ pub struct Loop {
 }
 
 impl Node {
-    /// Returns, for writing, the labels of the elements that end together with the node.
+    /// Returns the labels of the elements that end together with the node, so that they can be changed.
     pub(crate) fn marks_mut(&mut self) -> &mut Vec<Mark> {
         match self {
             Self::Atom(atom) => &mut atom.marks,

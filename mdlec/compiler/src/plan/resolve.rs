@@ -268,7 +268,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         ends
     }
 
-    /// Resolves `{ Behavior … }`, a scope.
+    /// Resolves a behavior `{ Behavior … }` inside a string to a scope.
     fn in_place(&mut self, plan: &tree::Plan<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let (scope, ends) = self.behavior(plan, frame);
         nodes.push(Node::Scope(scope));

@@ -39,7 +39,7 @@ pub(super) fn of_atom<'s>(condition: &Condition<'s>, build: &mut Build<'_, 's>) 
     build.read(condition, ConditionContext::Atom, 0)
 }
 
-/// Projects the condition of a behavior in place, which the first robot evaluates.
+/// Projects the condition of a behavior that is defined inside another plan. The first robot evaluates this condition.
 pub(super) fn of_behavior<'s>(condition: &Condition<'s>, build: &mut Build<'_, 's>) -> Condition<'s> {
     build.read(condition, ConditionContext::Behavior, 0)
 }

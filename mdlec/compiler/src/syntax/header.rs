@@ -55,7 +55,8 @@ fn name_of(tokens: &[Token<'_>], brace: usize) -> Option<usize> {
     (is_name(tokens, name) && !is_loop(tokens, brace)).then_some(name)
 }
 
-/// Returns the parentheses, at most two, that follow a plan's name at `at`. Each has its token kind.
+/// Returns the parentheses, at most two, that follow a plan's name at `at`. Each is returned with the kind of its
+/// token.
 fn groups<'s>(tokens: &[Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s str>>) -> [Option<(usize, Tok<'s>)>; 2] {
     if !is_parenthesis(tokens, at) {
         return [None; 2];

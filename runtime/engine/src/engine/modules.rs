@@ -91,7 +91,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.board
     }
 
-    /// Returns the board for writing. A replay uses it to set the values of the recorded run.
+    /// Returns the board, so that a replay can set the values of the recorded run.
     pub(super) fn board_mut(&mut self) -> &mut Board {
         &mut self.board
     }

@@ -190,7 +190,7 @@ impl<A: EngineAlphabet> Engine<A> {
         &self.plans
     }
 
-    /// Returns the plans for writing, so that requests can be made at a turn break.
+    /// Returns the plans, so that requests can be made at a turn break.
     pub fn plans_mut(&mut self) -> &mut Plans<A> {
         &mut self.plans
     }
@@ -200,7 +200,7 @@ impl<A: EngineAlphabet> Engine<A> {
         &self.modules
     }
 
-    /// Returns the modules for writing, so that requests can be made at a turn break.
+    /// Returns the modules, so that requests can be made at a turn break.
     pub fn modules_mut(&mut self) -> &mut Modules<A::Output> {
         &mut self.modules
     }

@@ -21,8 +21,7 @@ pub(crate) enum Compiler<A: EngineAlphabet> {
     AtOnce(Box<Compile<A>>, VecDeque<Outcome<A>>),
 }
 
-/// Orders that were waiting for the compiler and contain a plan to take over: one from the operator, and one from
-/// another robot.
+/// Orders to replace the plan that were waiting for the compiler: one from the operator, and one from another robot.
 type Waiting<A> = [Option<Order<A>>; 2];
 
 /// The compiler's thread, which ends when this value is dropped.

@@ -157,7 +157,7 @@ impl<A: EngineAlphabet> Plans<A> {
     }
 
     /// Replaces the active plan at once and without a trial, on behalf of a supervisor. Cancels all plans that were
-    /// about to take over, including plans that are being compiled, and bars plans of other robots.
+    /// about to take over, including plans that are being compiled, and bans plans of other robots.
     pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
         self.peers.bar(self.last, REPLACED);
         self.take_back();

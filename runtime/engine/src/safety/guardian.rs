@@ -36,7 +36,7 @@ impl<A: Alphabet> Guardian<A> {
         &self.envelope
     }
 
-    /// Returns the envelope for writing; its rules can be changed.
+    /// Returns the envelope, so that its rules can be changed.
     pub fn envelope_mut(&mut self) -> &mut Envelope {
         &mut self.envelope
     }

@@ -145,7 +145,7 @@ impl Measure {
         }
     }
 
-    /// Returns the limit of this quantity for writing.
+    /// Returns the limit of this quantity, so that it can be changed.
     #[must_use]
     pub fn of(self, limits: &mut Limits) -> &mut f64 {
         match self {

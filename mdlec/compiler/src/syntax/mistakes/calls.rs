@@ -1,4 +1,4 @@
-//! Reports mistakes in calls of laws, interrupts and plans, which are unexpected or malformed.
+//! Reports calls of laws, interrupts and plans that are unexpected or malformed.
 
 use super::atoms::end_of_call;
 use super::spelling;
