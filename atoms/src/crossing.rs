@@ -163,7 +163,7 @@ mod tests {
         assert!(waits([4.7, 4.2, 3.7]));
     }
 
-    /// Returns `true` if a robot waits that turns to and fro by this angle, in radians, between pings 180 ms apart.
+    /// Returns `true` if a robot that turns to and fro by this angle, in radians, between pings 180 ms apart waits.
     fn waits_while_it_turns(angle: f64) -> bool {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
         for (number, (range, turned)) in (0..).zip([(2.0, 0.0), (1.9, angle), (1.8, 0.0)]) {

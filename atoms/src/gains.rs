@@ -17,8 +17,8 @@ pub(crate) struct Gains {
     /// the resolution of the paper's sonars: beside a corner, a robot that required a smaller difference would turn
     /// into the corner.
     pub(crate) align_equal: f64,
-    /// `align`: time, in seconds, to wait for a sonar that no longer hears the wall: the time of three pings if it
-    /// pings in every turn, otherwise the time in which all sonars ping twice.
+    /// `align`: time, in seconds, to wait for a sonar that no longer receives an echo of the wall. It is the time of
+    /// three pings if the sonar pings in every turn, and otherwise the time in which all sonars ping twice.
     pub(crate) align_waits: f64,
     /// `goAvoid`: length of the way ahead that should be free. With a longer look-ahead, the robot would turn into a
     /// side corridor before `atIsection` has confirmed it. Where sonars fire in turn, ranges are up to a second old,

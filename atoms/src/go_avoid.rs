@@ -51,8 +51,9 @@ const SQUEEZES: Nanos = Nanos(30_000_000_000);
 const GOES_ROUND: Nanos = Nanos(60_000_000_000);
 /// Time without progress after which the robot follows ways on its map.
 const HELD_UP: Nanos = Nanos(1_200_000_000);
-/// Time without progress after which the robot is treated as kept from coming nearer even if it hears no obstacle, and
-/// the distance at which it is near enough grows by the possible drift of odometry.
+/// Time without progress after which the law assumes that something prevents the robot from coming nearer, even if the
+/// sonars detect no obstacle. From then on, the possible drift of odometry is added to the distance at which the robot
+/// is near enough.
 const DRIFTS_AFTER: Nanos = Nanos(10_000_000_000);
 /// Possible drift of odometry, as a fraction of the distance driven, and its maximum, `DRIFTS_MOST`, in metres. Without
 /// a maximum, the law of a robot that drives about in search of a way would eventually be done at any distance from the

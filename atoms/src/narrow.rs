@@ -64,8 +64,8 @@ impl Narrow {
         (self.way, self.stands) = (None, None);
     }
 
-    /// Returns the input that keeps the robot away from obstacles that it no longer hears, as it drives around them in
-    /// the direction `chosen`; `None` if there is enough room.
+    /// Returns the input that keeps the robot away from obstacles whose echoes it no longer receives, while it drives
+    /// around them in the direction `chosen`; `None` if there is enough room.
     pub(crate) fn round<Y: DiffDrive>(
         &self,
         y: &Y,

@@ -20,8 +20,8 @@ const RANGE: f64 = 0.05;
 /// wrong order.
 const WALLS: [f64; SONARS] =
     [1.08, 1.71, 0.75, 2.37, 1.41, 1.93, 0.86, 1.60, 1.19, 2.15, 0.97, 2.26, 1.52, 1.82, 1.30, 2.04];
-/// Half-widths of the walls, for sonars with even and with odd numbers, per metre of distance. The neighbouring sonars
-/// do not hear walls that are this narrow.
+/// Half-widths of the walls, for sonars with even and with odd numbers, per metre of distance. Walls that are this
+/// narrow cause no echoes at the neighbouring sonars.
 const HALF: [f64; 2] = [0.05, 0.08];
 /// Maximum age of a ping, in seconds: a full round of all sonars takes one second.
 const OLD: f64 = 2.0;

@@ -60,8 +60,8 @@ const ALIGNED: f64 = 0.02;
 /// Maximum angle, in radians, between the first walls and the axes of odometry for which the walls are treated as
 /// parallel to these axes.
 const ALONG_AXES: f64 = 0.17;
-/// Maximum drift of a frame whose axes are not the axes of odometry. A frame with a larger drift is treated as askew in
-/// the room.
+/// Maximum drift of a frame whose axes are not the axes of odometry. A frame with a larger drift is treated as not
+/// parallel to the walls of the room.
 const MOST: Radians = Radians::from_degrees(20.0);
 
 /// Estimate of the drift of the heading by odometry, from walls at right angles to each other.
@@ -102,8 +102,9 @@ impl Compass {
     /// Returns the angle by which drift has turned a frame; 0 while the drift is not known. `axis` is the direction, by
     /// odometry, of one of the frame's axes.
     ///
-    /// A frame is assumed to be parallel to the walls. However, if the first walls were askew to the axes of odometry,
-    /// only the drift since then is known, and only for frames along these axes; the result for any other frame is 0.
+    /// A frame is assumed to be parallel to the walls. However, if the first walls were not parallel to the axes of
+    /// odometry, only the drift since then is known, and only for frames along these axes; the result for any other
+    /// frame is 0.
     #[must_use]
     pub fn drift(&self, axis: Radians) -> Radians {
         let (of_frame, askew) = (-off_quarter(axis.0), self.askew.unwrap_or(0.0));
@@ -214,10 +215,10 @@ impl Compass {
 
     /// Measures the drift with a straight wall from which three adjacent sonars receive echoes, while the middle sonar
     /// is about square to the wall. Measures nothing while the drift is known more precisely. The first measurement
-    /// must come from another method, because three pings are too few to decide whether the room is askew to the axes
-    /// of odometry.
+    /// must come from another method, because three pings are too few to decide whether the walls of the room are
+    /// parallel to the axes of odometry.
     ///
-    /// If the robot is square to the wall, the two outer sonars hear equal ranges.
+    /// If the robot is square to the wall, the two outer sonars measure equal ranges.
     fn faces(&mut self, pings: &[Pings; SONARS], odometry: Pose, apart: Meters) {
         let newest = pings.iter().filter_map(|pings| pings.newest_first().next()).map(|ping| ping.at).max();
         let Some(newest) =

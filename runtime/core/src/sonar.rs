@@ -44,7 +44,7 @@ pub struct Ping {
     pub at: Nanos,
     /// Pose of the robot by odometry when the ping was taken.
     pub pose: Pose,
-    /// Mount of the transducer that heard the echo.
+    /// Mount of the transducer that received the echo.
     pub mount: Mount,
 }
 

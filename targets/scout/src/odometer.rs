@@ -52,7 +52,7 @@ impl Odometer {
     }
 }
 
-/// Returns the difference between two consecutive positions; the second may have wrapped.
+/// Returns the difference between two consecutive positions; the second may have overflowed and wrapped around.
 fn unwrapped(from: i16, to: i16) -> i64 {
     let way = i32::from(to) - i32::from(from);
     let half = NUMBERS / 2;

@@ -194,7 +194,7 @@ pub struct Atom {
     /// Interrupt of the atom.
     pub interrupt: Interrupt,
     /// Angle, in radians, by which the atom's frame is turned counter-clockwise. It is relative to the innermost
-    /// enclosing `FRAME here`; without one, it is relative to the plan's frame.
+    /// enclosing `FRAME here`; if there is none, it is relative to the plan's frame.
     pub frame: f64,
     /// `true` if the atom has `FRAME here`: its frame is then the robot's heading at the time of entry.
     pub here: bool,

@@ -150,7 +150,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         (scope, ends)
     }
 
-    /// Resolves a behavior in place.
+    /// Resolves a behavior that is defined inside a string.
     fn behavior(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, EndCauses) {
         if !plan.params.is_empty() {
             self.found.push(parameters::missing(plan, "it is written in place"));

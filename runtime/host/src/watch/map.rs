@@ -104,7 +104,7 @@ impl Map {
         map
     }
 
-    /// Draws the echoes that the robot hears at present.
+    /// Draws the echoes that the robot receives at present.
     pub(super) fn draw_current_echoes(&mut self, echoes: &[Point]) {
         for echo in echoes {
             self.dot(*echo, Ink::Echo);

@@ -59,7 +59,7 @@ impl Look {
     }
 }
 
-/// Echoes that a robot has heard while it turned at a landmark.
+/// Echoes that a robot has received while it turned at a landmark.
 pub(super) struct Heard {
     /// Name of the landmark at which the robot should be.
     expected: String,

@@ -237,7 +237,7 @@ impl Search {
         self.chances(place, moment, "", explainer);
     }
 
-    /// Records that an element in question was entered, and left in the same turn.
+    /// Records that one of the elements in question was entered, and was left in the same turn.
     fn skip(&mut self, place: FactsOfTurn, moment: &Moment, cause: &str, explainer: &mut Explainer) {
         let is_new =
             |bracket: &u32| moment.scopes.iter().any(|scope| scope.bracket == *bracket && scope.since == Nanos::ZERO);
