@@ -1,6 +1,6 @@
-//! Finds the shortest way on a map to a place nearer to the goal. A rectangle keeps to its way until another way is
-//! much shorter. It drives straight through places in which it cannot turn: in the last place before them, it turns to
-//! face the first place beyond them.
+//! Finds the shortest way on a map to a place nearer to the goal. A rectangular body keeps to its way until another way
+//! is much shorter. It drives straight through places in which it cannot turn: in the last place before them, it turns
+//! to face the first place beyond them.
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};

@@ -2,8 +2,8 @@
 //! suspended.
 //!
 //! After a suspension (SIGSTOP, Ctrl-Z, an attached debugger) Linux ends each `epoll_wait` with `EINTR`, see signal(7).
-//! The threads of RustDDS treat this as an error and end permanently: the robot could then neither be heard nor
-//! stopped. The replacements resume the wait until its timeout.
+//! The threads of RustDDS treat this as an error and end permanently: the driver could then neither receive data from
+//! the robot nor stop it. The replacements resume the wait until its timeout.
 //!
 //! The C library musl defines all of these functions in one object file, so replacing one requires replacing all.
 #![allow(unsafe_code, reason = "the linker finds functions by names that are not mangled, and the system fills memory")]

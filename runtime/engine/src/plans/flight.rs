@@ -54,12 +54,12 @@ impl<A: Alphabet> Desk<A> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts a turn on the desk, before the threads are called.
+    /// Stores a turn for the module that makes it, before the threads are called.
     pub(crate) fn lay(&self, flight: Box<Flight<A>>) {
         self.lock().flight = Some(flight);
     }
 
-    /// Takes the turn and its other results from the desk.
+    /// Removes and returns the stored turn and its other results.
     pub(crate) fn take(&self) -> Landed<A> {
         let mut desk = self.lock();
         Landed { flight: desk.flight.take(), replaced: desk.replaced.take(), panic: desk.panic.take() }
@@ -73,7 +73,7 @@ impl<A: EngineAlphabet> Flight<A> {
         Box::new(Self { current, next: None, published: Published::NONE, transitions, turn: None, at: Nanos::ZERO })
     }
 
-    /// Makes the turn. If a plan is replaced, it is put on the desk before its successor makes a turn, because the
+    /// Makes the turn. If a plan is replaced, it is stored in `desk` before its successor makes a turn, because the
     /// successor may hang.
     fn fly(&mut self, y: &A::Output, now: Nanos, desk: &Desk<A>) {
         let turn = self.current.turn(y, now, &mut self.transitions);
@@ -97,7 +97,7 @@ impl<A: EngineAlphabet> Flight<A> {
     }
 }
 
-/// Module that makes the turns of plans: in each turn, it makes the plan's turn that is on the desk.
+/// Module that makes the turns of plans: in each turn, it makes the plan's turn that is stored for it.
 pub(crate) struct PlanModule<A: Alphabet>(pub(crate) Arc<Desk<A>>);
 
 impl<A: EngineAlphabet> Module<A::Output> for PlanModule<A> {

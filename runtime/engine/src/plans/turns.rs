@@ -28,8 +28,8 @@ pub(crate) enum PlanTurn<U> {
 }
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Puts the plan's turn at time `now` on the desk of the plan module; `y` is the output of that turn. Returns the
-    /// values that the plan reads from modules. Returns `None` if the plan cannot begin yet and therefore makes no
+    /// Hands the plan's turn at time `now` to the plan module, which makes it; `y` is the output of that turn. Returns
+    /// the values that the plan reads from modules. Returns `None` if the plan cannot begin yet and therefore makes no
     /// turn.
     ///
     /// # Errors
@@ -77,7 +77,8 @@ impl<A: EngineAlphabet> Plans<A> {
         None
     }
 
-    /// Takes the plan's turn at time `now` from the desk, and writes the active plan's transitions to `transitions`.
+    /// Takes the plan's turn at time `now` back from the plan module, and writes the active plan's transitions to
+    /// `transitions`.
     pub(crate) fn land(&mut self, now: Nanos, transitions: &mut Transitions) -> PlanTurn<A::Input> {
         let Landed { flight, replaced, panic } = self.desk.take();
         if let Some(message) = panic {

@@ -42,11 +42,12 @@ impl Fleet {
         Ok(Self { runners: runners.collect::<Result<_, _>>()?, period: scenario.period, nearest: None })
     }
 
-    /// Makes turns until all plans are over, at `timeout`, or until a signal asks for the end; returns the exit status.
+    /// Makes turns until all plans are over, until the time `timeout` has passed, or until a signal requests the end.
+    /// Returns the exit status.
     ///
-    /// In each turn, the robots move, one after the other in the order of the file, each among the current
-    /// poses of the others; then all robots sense; then all plans make their turns, with the states that the
-    /// link delivered from earlier turns.
+    /// In each turn, the robots first move, one after the other in the order of the file, each among the current poses
+    /// of the others. Then all robots sense. Then all plans make their turns, with the states that the link has
+    /// delivered from earlier turns.
     pub(super) fn run(mut self, timeout: Duration, interruption: &Interruption, output: &mut Output) -> u8 {
         let nanos = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
         let (period, timeout) = (nanos(self.period), nanos(timeout));
