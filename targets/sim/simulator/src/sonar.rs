@@ -210,7 +210,8 @@ fn stepped(range: f64, step: f64) -> f64 {
     if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
 }
 
-/// Returns the ping of this sonar. Its range is the shortest of the last ranges of its transducers.
+/// Returns the ping of this sonar. Its range is the shortest of the last ranges of its transducers, measured from the
+/// ring; `None` if none of them received an echo.
 fn nearest(hearing: &Hearing, heard: &[Heard], sonar: usize, at: Nanos, odometry: Pose) -> Ping {
     let speaking = hearing.transducers.iter().zip(heard).filter(|(transducer, _)| transducer.sonar.number() == sonar);
     let heard = speaking.filter_map(|(transducer, last)| {
