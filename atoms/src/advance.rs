@@ -1,5 +1,5 @@
-//! `advance D v`: drives the distance `D` straight ahead, or backwards if it is negative. The law is an addition of
-//! this project to the paper's `goAvoid` (section IV-A).
+//! `advance D v`: drives the distance `D` straight ahead, or backwards if `D` is negative. The law is not in the paper;
+//! this project has added it beside the paper's `goAvoid` (section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
@@ -9,16 +9,16 @@ use crate::heading::turning;
 /// Speed, in m/s, per metre of the remaining distance, so that a body at full speed begins to brake early enough not to
 /// overshoot.
 const GAIN: f64 = 1.0;
-/// Maximum fraction of the remaining distance to drive before the law runs again. An input takes effect a turn
-/// later, so with a larger fraction the robot would oscillate.
+/// Maximum fraction of the remaining distance that one input may cover before the law runs again. An input takes effect
+/// a turn later, so with a larger fraction the robot would oscillate.
 const AT_ONCE: f64 = 0.25;
-/// Distance, in metres, within which the robot has arrived; half the distance if the whole distance is shorter
-/// than twice this.
+/// Distance, in metres, from the end at which the robot has arrived. For a distance that is shorter than twice this
+/// value, half of it is used instead.
 const NEAR: f64 = 0.01;
-/// Speed, in m/s, below which the robot counts as at rest.
+/// Speed, in m/s, below which the robot is treated as at rest.
 const AT_REST: f64 = 0.02;
 
-/// The control `advance`: `u_f = k(D − distance so far)`, at most `v`, and `u_θ = k(θ_0 − θ)`.
+/// The control `advance`: `u_f = k(D − distance so far)`, limited to `v`, and `u_θ = k(θ_0 − θ)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Advance {
     distance: Meters,
@@ -26,16 +26,16 @@ pub struct Advance {
 }
 
 impl Advance {
-    /// Returns the quark `advance distance speed`, which drives along the heading at which the atom begins,
-    /// backwards if the distance is negative.
+    /// Creates the quark `advance distance speed`, which drives along the heading at which the atom begins, backwards
+    /// if the distance is negative.
     #[must_use]
     pub const fn new(distance: Meters, speed: MetersPerSecond) -> Self {
         Self { distance, speed }
     }
 }
 
-/// The law of [`Advance`], which is done when the robot is at rest within 1 cm of its distance, measured along the
-/// heading at which the atom began.
+/// The law of [`Advance`], which is done when the robot is at rest and the distance driven, measured along the heading
+/// at which the atom began, differs by at most 1 cm from the required distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Advancing {
     quark: Advance,
@@ -91,8 +91,8 @@ mod tests {
     use super::*;
     use crate::trial::{PERIOD, Sensed, begun, framed};
 
-    /// Runs `advance` from a heading in degrees, with a push of `push` degrees to the left in each of the first ten
-    /// turns. Returns the number of turns until it ends.
+    /// Runs `advance` from the heading of `y`. In each of the first ten turns, the robot is pushed `push` degrees to
+    /// the left. Returns the number of turns until it ends.
     fn advanced(distance: f64, speed: f64, y: &mut Sensed, push: f64) -> u64 {
         let mut law = Advance::new(Meters(distance), MetersPerSecond(speed)).begin(&*y, framed(77.0));
         for number in 0..2000 {

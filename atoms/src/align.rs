@@ -12,15 +12,15 @@ use crate::gains::{Gains, fire_in_turn};
 
 /// Minimum turn rate, in rad/s; a lower rate does not move the wheels.
 const SLOWEST: f64 = 0.08;
-/// Maximum distance, in metres, between two consecutive differences of opposite sign that implies equal ranges at a
-/// heading between them. If the differences are further apart, one of the sonars points past an edge, or has measured a
-/// wrong range.
+/// Maximum change, in metres, of the difference of the ranges from one sample to the next. If the sign changes and the
+/// change is smaller, the ranges are equal at a heading between the two samples. If it is larger, one of the sonars
+/// points past an edge, or has measured a wrong range.
 const CONTINUOUS: f64 = 0.1;
-/// Number of sign changes of the difference after which the law no longer expects to find a heading with equal ranges.
+/// Number of sign changes of the difference after which the law stops looking for a heading with equal ranges.
 const CHANGES: u8 = 5;
 /// Duration of a full circle at the minimum turn rate, in seconds, after which the robot has tried every heading.
 const LONGEST: f64 = TAU / SLOWEST;
-/// Maximum angle to the final heading at which the robot is brought to rest.
+/// Maximum angle between the robot's heading and the final heading at which the law stops the robot.
 const NEAR: Radians = Radians::from_degrees(1.0);
 
 /// The control `align`: `u_θ = k(r_i − r_j)`, `u_f = 0`.
@@ -31,7 +31,7 @@ pub struct Align {
 }
 
 impl Align {
-    /// Returns the quark `align first second`.
+    /// Creates the quark `align first second`.
     #[must_use]
     pub const fn new(first: SonarId, second: SonarId) -> Self {
         Self { first, second }
@@ -42,20 +42,21 @@ impl Align {
 /// at rest at that heading.
 ///
 /// Beside a jamb, a corner or a door, there may be no heading with equal ranges: on one side of it the first range is
-/// longer, on the other side the second range. The law is then done at the heading at which the ranges differed least;
-/// the signals `r` of the two sonars show the remaining difference.
+/// longer, and on the other side the second range is longer. The law is then done at the heading at which the ranges
+/// differed by the smallest amount; the signals `r` of the two sonars show the remaining difference.
 ///
-/// The law waits for a sonar that occasionally misses an echo. If a sonar hears nothing for longer, the robot
-/// searches for the wall, at most once around. If it has heard no wall after the time of a slow full circle,
-/// the law is done at the current heading.
+/// The law waits for a sonar that occasionally misses an echo. If a sonar receives no echo for a longer time, the robot
+/// turns to search for the wall, by at most one full circle. If it has found no wall after the time of a slow full
+/// circle, the law is done at the current heading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aligning {
     sonars: Align,
     began: Nanos,
-    /// Time at which both sonars last heard an echo; `None` before that.
+    /// Time at which both sonars last received an echo; `None` before that.
     heard: Option<Nanos>,
     last: Option<Sample>,
-    /// Sample with the least difference so far, the last one if several are equal; `None` before the first sample.
+    /// Sample with the smallest difference so far. If several samples are equal, this is the last of them; `None`
+    /// before the first sample.
     best: Option<Sample>,
     /// Number of times that the sign of the difference has changed.
     changes: u8,
@@ -67,7 +68,7 @@ pub struct Aligning {
 struct Sample {
     /// Range of the first sonar minus the range of the second, in metres.
     difference: f64,
-    /// Mean of the headings at which the sonars pinged. Where the ranges change evenly, the difference belongs
+    /// Mean of the headings at which the sonars pinged. If the ranges change at a constant rate, the difference belongs
     /// to this heading.
     heading: Radians,
 }
@@ -76,12 +77,13 @@ struct Sample {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct End {
     heading: Radians,
-    /// `true` if the last input of the law stopped the robot at this heading.
+    /// `true` if the last input that the law returned stops the robot at this heading.
     stands: bool,
 }
 
 impl Aligning {
-    /// Returns the sample of the newest echoes, confirmed as in `atIsection`; `None` if a sonar hears nothing.
+    /// Returns the sample of the newest echoes, which are confirmed by earlier pings as in `atIsection`; `None` if one
+    /// of the sonars receives no echo.
     fn sample<Y: SonarRing>(&self, y: &Y) -> Option<Sample> {
         let Align { first, second } = self.sonars;
         let ((first, near), (second, far)) = (nearest(y, first)?, nearest(y, second)?);
@@ -94,7 +96,7 @@ impl Aligning {
         self.sample(y).filter(|sample| sample.difference.abs() <= Gains::of(y).align_equal)
     }
 
-    /// Takes a sample. If the robot has just passed a heading with equal ranges, the law will end at this heading.
+    /// Stores a sample. If the robot has just passed a heading with equal ranges, the law will end at this heading.
     ///
     /// Pings of sonars that fire in turn belong to headings that are degrees apart, and their ranges may be wrong by an
     /// inch, so a change of sign alone does not mean equal ranges.
@@ -120,7 +122,8 @@ impl Aligning {
         self.end = self.end.or(Some(End { heading, stands: false }));
     }
 
-    /// Returns the turn rate, in rad/s, while only one sonar hears an echo: towards the sonar that hears it.
+    /// Returns the turn rate, in rad/s, for a turn in which at most one sonar receives an echo. The robot turns towards
+    /// that sonar.
     fn unheard<Y: DiffDrive + SonarRing>(&self, y: &Y, t: Nanos) -> f64 {
         let Gains { align_waits: waits, align_fastest: fastest, .. } = *Gains::of(y);
         let (since, waits) = self.heard.map_or((self.began, 0.0), |heard| (heard, waits));
@@ -142,16 +145,17 @@ impl Aligning {
         self.sense() * bounded(rate, Gains::of(y).align_fastest)
     }
 
-    /// Returns 1 if the second sonar is counter-clockwise of the first, as in all plans of the paper; otherwise
-    /// -1, since the paper's formula would then turn away from equal ranges.
+    /// Returns the sign of the turn rate. It is 1 if the second sonar is counter-clockwise of the first, as in all
+    /// plans of the paper. Otherwise it is -1, because the paper's formula would then turn the robot away from equal
+    /// ranges.
     fn sense(&self) -> f64 {
         let way = (SONARS + self.sonars.second.number() - self.sonars.first.number()) % SONARS;
         if way <= SONARS / 2 { 1.0 } else { -1.0 }
     }
 }
 
-/// Returns the ping with the smallest range among those that confirm each other, and its range in metres; `None` if
-/// none of these pings has an echo.
+/// Returns the ping with the smallest range among the last pings of a sonar that confirm each other, and its range in
+/// metres; `None` if none of these pings has an echo.
 fn nearest<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(&Ping, f64)> {
     let pings = y.pings(sonar).newest_first().take(y.confirmation());
     let heard = pings.filter_map(|ping| ping.range.map(|range| (ping, range.0)));
@@ -163,7 +167,8 @@ fn between(from: Radians, to: Radians, part: f64) -> Radians {
     Radians(from.0 + part * Radians(to.0 - from.0).wrapped().0)
 }
 
-/// Returns a turn rate that is high enough to move the wheels and at most `fastest`; 0 stays 0.
+/// Returns `rate`, limited to absolute values that are high enough to move the wheels and at most `fastest`. A rate of
+/// 0 remains 0.
 fn bounded(rate: f64, fastest: f64) -> f64 {
     if rate == 0.0 { 0.0 } else { rate.abs().clamp(SLOWEST, fastest) * rate.signum() }
 }

@@ -1,4 +1,4 @@
-//! Detects a person who approaches the robot, because the echoes ahead get nearer faster than the robot drives.
+//! Detects a person who approaches the robot: the echoes ahead come nearer faster than the robot drives.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
@@ -8,9 +8,10 @@ const AHEAD: Radians = Radians::from_degrees(14.0);
 /// Minimum time between two compared echoes. In a shorter time, the range of an approaching person decreases by less
 /// than the error of the ranges.
 const APART: Nanos = Nanos(200_000_000);
-/// Minimum speed of an approaching person, in m/s; the robot avoids anything slower as it avoids a fixed obstacle.
+/// Minimum speed of an approaching person, in m/s; the robot avoids a slower object in the same way as a fixed
+/// obstacle.
 const SLOWEST: f64 = 0.3;
-/// Maximum speed of a person, in m/s; faster echoes belong to two different objects.
+/// Maximum speed of a person, in m/s; echoes that come nearer faster belong to two different objects.
 const FASTEST: f64 = 2.0;
 /// Minimum decrease, in metres, of the range of an approaching object. A smaller decrease may be the error of the
 /// ranges of a fixed obstacle, which is 1.5 cm plus rounding to an inch.
@@ -18,23 +19,23 @@ const NEARER: f64 = 0.1;
 
 /// Number of echoes that are kept.
 const KEPT: usize = 5;
-/// Minimum number of consecutive echoes that get nearer.
+/// Minimum number of consecutive echoes, each nearer than the one before.
 const AGREE: usize = 3;
-/// Minimum time, on a robot whose sonars fire in turn, for which the echoes must get nearer. The wide cones of its
-/// sonars alternately hear different rough walls beside the way, and three of these ranges may decrease by chance.
+/// Minimum time, on a robot whose sonars fire in turn, for which the echoes must come nearer. The wide cones of the
+/// sonars alternately reach different rough walls beside the way, and three such ranges may decrease by chance.
 const LASTS: Nanos = Nanos(1_400_000_000);
 /// Maximum lateral distance, in metres, between two echoes of the same object.
 const ACROSS: f64 = 0.25;
 
-/// Maximum turn rate of the robot, in rad/s, between compared echoes. As the robot turns, a wall that the edge of a
-/// cone just touches appears and disappears.
+/// Maximum turn rate of the robot, in rad/s, between compared echoes. While the robot turns faster, the edge of a cone
+/// may reach a wall and leave it again.
 const TURNS: f64 = 0.02;
 
-/// An echo: its place in odometry coordinates, and its time.
+/// An echo: its position in odometry coordinates, and its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Echo {
     at: Nanos,
-    /// Place of the echo; the heading is the direction of the sonar's axis.
+    /// Position of the echo; the heading is the direction of the sonar's axis.
     place: Pose,
 }
 
@@ -47,7 +48,7 @@ struct Relative {
     across: f64,
 }
 
-/// The last echoes ahead, newest first, without silence between them.
+/// The last echoes ahead, newest first. Between them there was no ping without an echo.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Approach {
     heard: [Option<Echo>; KEPT],
@@ -76,7 +77,7 @@ impl Approach {
     /// Returns the time, in seconds, from the newest echo until an approaching person reaches the robot; `None` if no
     /// person approaches.
     ///
-    /// Fixed obstacles are not reported, because their echoes stay at the same place.
+    /// Fixed obstacles are not reported, because their echoes stay at the same position.
     pub(crate) fn seconds(&self, here: Pose, way: Radians, in_turn: bool) -> Option<f64> {
         let (sin, cos) = libm::sincos(way.0);
         let mut heard = self.heard.iter().flatten().map(|Echo { at, place }| {
@@ -114,8 +115,8 @@ mod tests {
     use mdle_runtime::Twist;
 
     /// Returns the time, in seconds, until an approaching person reaches a robot that drives at `v` m/s and turns at
-    /// `omega` rad/s, and that hears the person at these ranges, one second apart; `None` if the robot detects no
-    /// approaching person.
+    /// `omega` rad/s, and that receives echoes of the person at these ranges, one second apart; `None` if the robot
+    /// detects no approaching person.
     fn seconds(ranges: &[Option<f64>], v: f64, omega: f64) -> Option<f64> {
         let (mut y, mut approach) = (Sensed::default(), Approach::default());
         for (second, range) in (0..).zip(ranges) {
@@ -148,8 +149,8 @@ mod tests {
         assert_eq!(seconds(&[Some(4.0), Some(3.8), Some(2.6)], 0.2, 0.0), None);
     }
 
-    /// Returns `true` if a robot at rest whose sonars fire in turn detects a person who approaches at 1 m/s after
-    /// `echoes` echoes, 0.36 s apart.
+    /// Returns `true` if a robot at rest, whose sonars fire in turn, detects a person who approaches at 1 m/s. The
+    /// person causes `echoes` echoes, 0.36 s apart.
     fn avoids(echoes: u64) -> bool {
         let (mut y, mut approach) = (Sensed::default(), Approach::default());
         for echo in 0..echoes {

@@ -1,33 +1,36 @@
-//! Detects that a robot whose sonars fire in turn is askew to the walls, because a wall faces it between the
-//! front, the left, the back and the right.
+//! Detects that a robot whose sonars fire in turn is not aligned with the walls: a wall faces it in a direction between
+//! the front, the left, the back and the right.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Ping, Radians, SONARS, SonarId};
 
 use crate::directions::{CONE, DIRECTIONS, after, newest, off, towards};
 
-/// Maximum range of a wall that faces a diagonal, as a multiple of the range below which a direction is blocked.
+/// Maximum range of a wall that faces the robot in a diagonal direction, as a multiple of the range below which a
+/// direction is blocked.
 const ALSO_FACES: f64 = 1.5;
-/// Difference, in metres, below which ranges count as equal.
+/// Difference, in metres, below which ranges are treated as equal.
 const ALIKE: f64 = 0.06;
-/// Minimum angle between a diagonal and the pings that distinguish a wall facing the diagonal from an edge.
+/// Minimum angle between a diagonal direction and a ping that shows that a wall, and not an edge, faces the robot in
+/// this direction.
 const BESIDE: Radians = Radians::from_degrees(16.0);
-/// Maximum distance, in metres, between an echo and the line of a wall that faces a diagonal. At the edge of a passage,
-/// echoes of the rough walls that lead away from the edge are further beyond this line.
+/// Maximum distance, in metres, between an echo and the line of a wall that faces the robot in a diagonal direction. At
+/// the edge of a passage, the echoes of the rough walls that lead away from the edge are beyond this line by more than
+/// that.
 const OF_LINE: f64 = 0.04;
 
 /// Directions of the normals of the smooth walls to search for, in degrees counter-clockwise from one of the four
 /// directions.
 const SMOOTH_AT: [f64; 7] = [26.0, 31.0, 38.0, 45.0, 52.0, 59.0, 64.0];
-/// Angle from the normal of a smooth wall up to which the wall is heard.
+/// Angle from the normal of a smooth wall up to which the wall returns an echo.
 const WIDTH: Radians = Radians::from_degrees(31.0);
-/// Angle from the normal of a wall up to which the range equals the distance of the wall.
+/// Angle from the normal of a wall up to which a range is taken for the distance of the wall.
 const MIDDLE: Radians = Radians::from_degrees(14.0);
-/// Range of angles from the normal of a smooth wall at which the wall is not heard.
+/// Range of angles from the normal of a smooth wall at which the wall returns no echo.
 const BEYOND: [Radians; 2] = [Radians::from_degrees(44.0), Radians::from_degrees(66.0)];
 /// Age from which a ping is no longer considered for a smooth wall.
 const LATELY: Nanos = Nanos(2_200_000_000);
-/// Minimum ratio of pings that heard the wall to pings that missed it or measured a wrong range.
+/// Minimum number of pings with an echo of the wall for each ping that has missed the wall or measured a wrong range.
 const FEW: usize = 3;
 
 /// Returns `true` if a wall faces the robot between two of the four directions.
@@ -43,9 +46,10 @@ fn after_by(direction: SonarId, degrees: f64) -> Radians {
     Radians(direction.bearing().0 + Radians::from_degrees(degrees).0)
 }
 
-/// Returns `true` if a wall faces the diagonal counter-clockwise after `direction`: near objects are heard there and on
-/// both sides, those on the sides are not nearer, and the objects are neither an edge nor a corner between two walls.
-/// An edge is heard in only one or two directions.
+/// Returns `true` if a wall faces the robot in the diagonal direction that is counter-clockwise after `direction`. This
+/// requires that there are near echoes in this direction and on both sides of it, that those on the sides are not
+/// nearer, and that the echoes come neither from an edge nor from a corner between two walls. An edge returns echoes in
+/// only one or two directions.
 fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
     let near = |further: usize| towards(y, after(direction, further)).filter(|range| is_near(y, *range));
     let (Some(before), Some(diagonal), Some(behind)) = (near(1), near(2), near(3)) else { return false };
@@ -58,8 +62,8 @@ fn is_near<Y: SonarRing>(y: &Y, range: Meters) -> bool {
     range.0 < ALSO_FACES * y.blocked_within().0
 }
 
-/// Returns `true` if the two newest pings in the direction of `beside` heard only objects further away than a
-/// straight wall that faces `diagonal` at this range.
+/// Returns `true` if the two newest pings in the direction of `beside` show only objects that are further away than a
+/// straight wall at this range that faces the robot in the direction `diagonal`.
 fn runs_off<Y: SonarRing>(y: &Y, diagonal: SonarId, range: Meters, beside: SonarId) -> bool {
     let ring = y.ring_radius().0;
     let angle = |sonar: SonarId, ping: &Ping| off(y, diagonal, sonar, ping).0.abs();
@@ -80,10 +84,10 @@ struct Look {
     range: Option<Meters>,
 }
 
-/// Returns `true` if the last pings heard a smooth wall whose normal has this bearing. Within `WIDTH` of the normal,
-/// all pings but a few must return the range of a straight wall there, on either side and in the middle. Between the
-/// angles `BEYOND`, where a rough wall would be heard too, no ping may hear a near object. An edge is heard only within
-/// half of `WIDTH`.
+/// Returns `true` if the last pings show a smooth wall whose normal has this bearing. Within `WIDTH` of the normal, all
+/// pings but a few must have the range of a straight wall, on either side and in the middle. Between the angles
+/// `BEYOND`, where a rough wall would also return an echo, no ping may have a near echo. An edge returns echoes only
+/// within half of `WIDTH`.
 fn is_smooth_wall<Y: SonarRing>(y: &Y, bearing: Radians) -> bool {
     let ring = y.ring_radius().0;
     let looks = || looks(y, bearing);
@@ -133,8 +137,8 @@ mod tests {
     use super::*;
     use crate::trial::Sensed;
 
-    /// Returns the output of a robot whose sonars fire in turn, with these ranges heard twice by each sonar,
-    /// from the front sonar on.
+    /// Returns the output of a robot whose sonars fire in turn, in which each sonar has measured its range twice. The
+    /// first range is that of the front sonar.
     fn in_turn(ranges: [f64; 16]) -> Sensed {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
         for _ in 0..2 {
@@ -171,8 +175,8 @@ mod tests {
         assert!(!faces_between(&y, SonarId::new(8)), "an edge");
     }
 
-    /// Returns the output of a robot that has turned by 16 degrees, and that heard, before and after, a smooth
-    /// wall 1.1 m away at this bearing, in degrees now, within `width` degrees of its normal.
+    /// Returns the output of a robot that has turned by 16 degrees beside a smooth wall 1.1 m away. The wall is now at
+    /// this bearing, in degrees, and returned echoes before and after the turn within `width` degrees of its normal.
     fn beside_a_smooth_wall(bearing: f64, width: f64) -> Sensed {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
         for turned in [-16.0, -8.0, 0.0] {

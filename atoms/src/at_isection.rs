@@ -1,4 +1,4 @@
-//! `atIsection b`: fires when the directions front, left, back and right are as the bits describe (paper,
+//! `atIsection b`: fires when the directions front, left, back and right are blocked or free, as the bits say (paper,
 //! section IV-A).
 
 use mdle_runtime::capability::SonarRing;
@@ -12,15 +12,15 @@ use crate::gains::fire_in_turn;
 /// free direction.
 ///
 /// On a robot whose sonars fire in turn, as on real robots, the interrupt also requires that walls face the robot in
-/// the four directions and not between them. A wall is heard only by the sonars that it faces, so a robot that is
-/// turned between two directions hears nothing, and a blocked direction seems free.
+/// the four directions and not between them. A wall returns echoes only to the sonars that it faces, so a robot whose
+/// heading is between two directions of the walls receives no echo, and a blocked direction seems free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AtIsection {
     pattern: Bits<4>,
 }
 
 impl AtIsection {
-    /// Returns the quark `atIsection pattern`, with the bits front, left, back, right.
+    /// Creates the quark `atIsection pattern`, with the bits front, left, back, right.
     #[must_use]
     pub const fn new(pattern: Bits<4>) -> Self {
         Self { pattern }
@@ -39,12 +39,12 @@ impl<Y: SonarRing> Interrupt<Y> for AtIsection {
     }
 }
 
-/// Returns `Some(true)` if `sonar` itself hears a near obstacle, and `Some(false)` if its direction is free; `None`
-/// before its first ping.
+/// Returns `Some(true)` if `sonar` itself receives the echo of a near obstacle, and `Some(false)` if its direction is
+/// free; `None` before its first ping.
 ///
-/// The smallest of the last ranges decides: one near echo blocks the direction, and it is free again only when all last
-/// pings agree, so that a missed echo does not free it. Only the sonar in that direction is considered, since its
-/// neighbours hear the walls along a corridor.
+/// The smallest of the last ranges decides: one near echo blocks the direction, and the direction is free again only
+/// when all last pings agree, so that a missed echo does not make it free. Only the sonar in that direction is
+/// considered, because its neighbours receive echoes of the walls along a corridor.
 fn blocked<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     let pings = y.pings(sonar);
     pings.newest_first().next()?;
@@ -52,8 +52,9 @@ fn blocked<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
 }
 
 /// Returns `Some(true)` if an obstacle is near in the direction of `sonar`, and `Some(false)` if the direction is free,
-/// on a robot whose sonars fire in turn; `None` after too few pings. The pings of any sonar that faced in that
-/// direction of the room count, because the last pings of a single sonar of a turning robot were in other directions.
+/// on a robot whose sonars fire in turn; `None` after too few pings. All pings are considered that were made in that
+/// direction of the room, by whichever sonar, because the last pings of a single sonar of a turning robot were in other
+/// directions.
 fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     let near = towards(y, sonar)?;
     Some(near < y.blocked_within())
@@ -196,8 +197,8 @@ mod tests {
         assert!(fires("0000", &y) && !fires("0100", &y));
     }
 
-    /// Returns the output of a robot whose sonars fire in turn, with these ranges heard twice by each sonar,
-    /// from the front sonar on.
+    /// Returns the output of a robot whose sonars fire in turn, in which each sonar has measured its range twice. The
+    /// first range is that of the front sonar.
     fn in_turn(ranges: [f64; 16]) -> Sensed {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
         for _ in 0..2 {

@@ -8,7 +8,7 @@ use mdle_runtime::capability::Bumpers;
 pub struct Bumper;
 
 impl Bumper {
-    /// Returns the quark `bumper`.
+    /// Creates the quark `bumper`.
     #[must_use]
     pub const fn new() -> Self {
         Self

@@ -1,37 +1,37 @@
-//! Detects a person who is about to cross the robot's way, because the echoes of a sonar that faces to the side
-//! get nearer faster than the robot drives.
+//! Detects a person who is about to cross the robot's way: the echoes of a sonar that faces to the side come nearer
+//! faster than the robot drives.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
 
-/// Minimum and maximum speed, in m/s, of a person who crosses the way. A slower object counts as fixed, and echoes that
-/// move faster belong to different objects.
+/// Minimum and maximum speed, in m/s, of a person who crosses the way. A slower object is treated as fixed, and faster
+/// echoes belong to different objects.
 const SPEEDS: [f64; 2] = [0.25, 2.0];
 /// Maximum turn rate of the robot, in rad/s, between compared echoes: as the robot turns, the echo of a wall
 /// moves along the wall.
 const TURNS: f64 = 0.02;
-/// Maximum angle, in radians, by which the robot may turn between compared echoes at any rate. It hardly moves an echo,
-/// and wheels that skid turn the robot to and fro by as much.
+/// Maximum angle, in radians, by which the robot may turn between compared echoes, at whatever rate. A turn by this
+/// angle hardly moves an echo, and skidding wheels turn the robot to and fro by as much.
 const TURNED: f64 = 0.01;
-/// Minimum decrease, in metres, of the distance of a crossing person between echoes. A smaller decrease may be an error
-/// of the ranges.
+/// Minimum decrease, in metres, of the distance of a crossing person from the first compared echo to the last. A
+/// smaller decrease may be an error of the ranges.
 const NEARER: f64 = 0.075;
 /// The radius of a person, in metres.
 const PERSON: f64 = 0.25;
-/// Room, in metres, that the robot leaves between a person and its body. The direction of an echo is uncertain by the
-/// cone of its sonar.
+/// Distance, in metres, that the robot leaves between a person and its body, because the direction of an echo within
+/// the cone of its sonar is not known.
 const CLEAR: f64 = 0.2;
-/// Minimum distance, in metres, from the way at which the robot backs off from a person. Echoes of the rough walls of a
-/// hallway that come nearer by chance are nearer than that.
+/// The robot backs off only from a person who is at least this far, in metres, from its way. Echoes of the rough walls
+/// of a hallway, whose ranges may decrease by chance, are nearer.
 const FAR: f64 = 1.2;
-/// Maximum time, in seconds, in which a person reaches the way for the robot to back off.
+/// The robot backs off only from a person who will reach its way within this time, in seconds.
 const BACK: f64 = 5.0;
-/// Minimum distance, in metres, of a crossing person from the way. A person nearer to the way is an obstacle, or walks
-/// along the way.
+/// Minimum distance, in metres, between a crossing person and the way. A person nearer to the way is an obstacle, or
+/// walks along the way.
 const ASIDE: f64 = 0.45;
-/// Maximum time, in seconds, in which a person reaches the way. A sonar that pings once a second has heard a person
-/// for two seconds before its three pings agree, and its direction is uncertain by several degrees: a robot that stops
-/// later may already be where the person walks.
+/// The robot reacts only to a person who will reach its way within this time, in seconds. A sonar that pings once a
+/// second takes two seconds until three pings agree, and the direction of its echoes is uncertain by several degrees.
+/// A robot that stops later may already be where the person walks.
 const SOON: f64 = 8.0;
 
 /// An echo: its time in seconds, and its distance along the way and to the left of it, in metres.
@@ -47,20 +47,21 @@ pub(crate) struct Crossing {
     /// Time, in seconds, until the person has crossed the way.
     pub(crate) passed: f64,
     /// Distance, in metres, by which the robot has to back off so that the person passes ahead of it; 0 if the person
-    /// does so anyway.
+    /// passes ahead of it anyway.
     pub(crate) back: f64,
 }
 
 /// Returns the person who comes from a side and may meet the robot if it drives on at `speed`, in m/s; `None` if no
-/// such person comes. Of several persons, the longest time and distance count.
+/// such person comes. If there are several such persons, the result has the longest of their times and the longest of
+/// their distances.
 pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> Option<Crossing> {
     let ahead = libm::sincos(here.theta.0);
     let all = (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, (here, ahead), speed));
     all.reduce(|one, other| Crossing { passed: one.passed.max(other.passed), back: one.back.max(other.back) })
 }
 
-/// Returns the person heard in all kept pings of `sonar`; `None` if there is no such person. The conditions are those
-/// of [`crosses`]. `sin` and `cos` belong to the heading of `here`.
+/// Returns the person whose echoes are in all kept pings of `sonar`; `None` if there is no such person. The conditions
+/// are those of [`crosses`]. `sin` and `cos` belong to the heading of `here`.
 fn comes<Y: DiffDrive + SonarRing>(
     y: &Y,
     sonar: SonarId,
@@ -121,13 +122,13 @@ mod tests {
     use crate::trial::Sensed;
     use mdle_runtime::Nanos;
 
-    /// Returns the time, in seconds, for which a robot at rest waits for a person whom its sonar 3 hears at these
-    /// ranges, one second apart; `None` if it does not wait.
+    /// Returns the time, in seconds, for which a robot at rest waits for a person whose echoes its sonar 3 receives at
+    /// these ranges, one second apart; `None` if it does not wait.
     fn seconds(ranges: [f64; 3]) -> Option<f64> {
         person(3, ranges).map(|person| person.passed)
     }
 
-    /// Returns the person whom a robot at rest hears by this sonar at these ranges, one second apart.
+    /// Returns the person whose echoes this sonar of a robot at rest receives at these ranges, one second apart.
     fn person(sonar: u8, ranges: [f64; 3]) -> Option<Crossing> {
         let mut y = Sensed::default();
         for (second, range) in (0..).zip(ranges) {
@@ -136,7 +137,7 @@ mod tests {
         crosses(&y, y.pose, 0.2)
     }
 
-    /// Returns `true` if the robot waits for the person.
+    /// Returns `true` if a robot at rest waits for the person whose echoes have these ranges.
     fn waits(ranges: [f64; 3]) -> bool {
         seconds(ranges).is_some()
     }
@@ -162,7 +163,7 @@ mod tests {
         assert!(waits([4.7, 4.2, 3.7]));
     }
 
-    /// Returns `true` if a robot waits that turns to and fro by this angle, in radians, between pings 180 ms apart.
+    /// Returns `true` if a robot that turns to and fro by this angle, in radians, between pings 180 ms apart waits.
     fn waits_while_it_turns(angle: f64) -> bool {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
         for (number, (range, turned)) in (0..).zip([(2.0, 0.0), (1.9, angle), (1.8, 0.0)]) {
@@ -177,7 +178,7 @@ mod tests {
         assert!(waits_while_it_turns(0.009) && !waits_while_it_turns(0.011));
     }
 
-    /// A person 1.4 m away at 67.5° is 53 cm ahead, and would touch a robot that stands.
+    /// A person 1.4 m away at 67.5° is 53 cm ahead, and would touch a robot that stands still.
     #[test]
     fn the_robot_backs_off_from_where_a_person_would_meet_it() {
         let back = |ranges| person(3, ranges).map(|person| person.back);

@@ -1,4 +1,4 @@
-//! Finds the echoes that a robot's sonars have heard in its four directions, regardless of which sonar faced there.
+//! Finds the echoes that a robot's sonars have received from its four directions, whichever sonar faced there.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};
@@ -6,16 +6,17 @@ use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};
 /// The sonars front, left, back and right, in the order in which the bits are written.
 pub(crate) const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
 
-/// Maximum angle between a direction and the axis of a ping that counts for it. It is a little more than half the angle
-/// between two sonars, so that a slowly turning robot always has a sonar in each direction.
+/// Maximum angle between a direction and the axis of a ping that is used for it. It is a little more than half the
+/// angle between two sonars, so that a slowly turning robot always has a sonar in each direction.
 const WITHIN: Radians = Radians::from_degrees(14.0);
-/// Difference, in metres, below which two ranges of one sonar are taken for echoes of the same object, and not for
+/// Difference, in metres, below which two ranges of one sonar are treated as echoes of the same object, and not as
 /// random errors.
 const SAME: f64 = 0.1;
 
-/// Half the angle of the cone in which a sonar hears a rough wall.
+/// Half the angle of the cone in which a sonar receives echoes of a rough wall.
 pub(crate) const CONE: Radians = Radians::from_degrees(12.5);
-/// Maximum distance, in metres, between a wall and the point where the edge of a cone is taken to reach it.
+/// Maximum distance, in metres, between a wall and the edge of a cone at which the cone is treated as reaching the
+/// wall.
 const OF_WALL: f64 = 0.08;
 /// Factor and offset, in metres, by which the ranges of a sonar's neighbours may exceed its own range along a
 /// straight wall; an echo from beyond an opening is further away.
@@ -25,7 +26,7 @@ const SLANT: (f64, f64) = (1.08, 0.02);
 /// echo.
 ///
 /// `None` if there were too few pings in that direction: a single ping with a near echo is enough, but a single ping
-/// without one does not free the direction.
+/// without a near echo does not make the direction free.
 pub(crate) fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
     let newest = newest(y, direction, |sonar, ping| !is_of_side(y, direction, sonar, ping));
     let nearest = nearest(newest);
@@ -35,7 +36,7 @@ pub(crate) fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters>
     }
 }
 
-/// Returns the two newest pings that count in the present direction of a sonar.
+/// Returns the two newest pings that are used for the present direction of a sonar.
 pub(crate) fn newest<Y: SonarRing>(
     y: &Y,
     direction: SonarId,
@@ -58,7 +59,7 @@ pub(crate) fn newest<Y: SonarRing>(
 }
 
 /// Returns `true` if this ping of `sonar` was in the present direction of the sonar `direction`, and its echo, if it
-/// had one, still lies in that direction. The echo of a jamb that the robot has passed no longer does.
+/// had one, still lies in that direction. The echo of a door post that the robot has passed no longer does.
 fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
     let here = y.here();
     let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
@@ -94,15 +95,15 @@ pub(crate) fn after(sonar: SonarId, further: usize) -> SonarId {
     SonarId::new(((sonar.number() + further) % SONARS) as u8)
 }
 
-/// Returns the minimum range of these pings; `None` if none of them had an echo.
+/// Returns the smallest range of these pings; `None` if none of them had an echo.
 fn nearest(pings: [Option<(SonarId, &Ping)>; 2]) -> Option<Meters> {
     let heard = pings.into_iter().flatten().filter_map(|(_, ping)| ping.range);
     heard.reduce(|one, other| if other < one { other } else { one })
 }
 
-/// Returns the range of a wall that the third-last ping of a sonar heard and its last two pings did not. The last two
-/// returned no echo or a wrong range, or the sonar has turned past the wall. The wall counts only if both neighbours of
-/// the sonar have heard it lately, and nothing further away.
+/// Returns the range of a wall that the third-last ping of a sonar shows and its last two pings do not. The last two
+/// pings may have missed the wall or measured a wrong range, or the sonar may have turned past the wall. Therefore both
+/// neighbours of the sonar must have received an echo of the wall lately, and no echo from further away.
 fn overheard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
     let [new, old, before] = [0, 1, 2].map(|number| y.pings(sonar).newest_first().nth(number)?.range);
     let before = before.filter(|range| *range < y.blocked_within())?;

@@ -5,8 +5,8 @@ use mdle_runtime::{
     Begin, Completes, Control, Law, MetersPerSecond, Nanos, PeerState, Pose, Radians, RadiansPerSecond, Twist,
 };
 
-/// Distance to keep between the centres of the robots, in metres; a larger distance shortens the path more with each
-/// trip.
+/// Distance to keep between the centres of the robots, in metres; with a larger distance, the path becomes shorter with
+/// each trip.
 const GAP: f64 = 0.90;
 /// Maximum forward speed, in m/s.
 const SPEED: f64 = 0.5;
@@ -14,42 +14,43 @@ const SPEED: f64 = 0.5;
 const TURNS: f64 = 3.0;
 /// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 1.5;
-/// Speed, in m/s, that is added to the leader's speed per metre by which the gap is too large.
+/// Speed, in m/s, that is added to the leader's speed for each metre by which the gap is too large.
 const CLOSES: f64 = 1.0;
 /// Distance beyond [`GAP`], in metres, at which the follower has arrived.
 const NEAR: f64 = 0.05;
-/// Speed below which the leader counts as at rest, in m/s.
+/// Speed below which the leader is treated as at rest, in m/s.
 const AT_REST: f64 = 0.02;
 
-/// The control `Follow`: `u_f = v_leader + k_v (ρ − d)`, at most `v` and less while the leader is not ahead, and `u_θ =
-/// k(φ − θ)`, with the leader at the distance `ρ` in the direction `φ`. In the paper, `u_f` is the constant `v`, with
-/// which the follower runs into a leader that stops.
+/// The control `Follow`: `u_f = v_leader + k_v (ρ − d)`, limited to `v`, and lower while the leader is not straight
+/// ahead, and `u_θ = k(φ − θ)`, with the leader at the distance `ρ` in the direction `φ`. In the paper, `u_f` is the
+/// constant `v`, with which the follower runs into a leader that stops.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Follow(&'static str);
 
 impl Follow {
-    /// Returns the quark `Follow robot`.
+    /// Creates the quark `Follow robot`.
     #[must_use]
     pub const fn new(robot: &'static str) -> Self {
         Self(robot)
     }
 }
 
-/// The law of [`Follow`], which is done when the leader is at rest nearby, and the leader has moved since the law began
-/// or the robot has driven at least 0.9 m. The robot stands still while the leader's state is stale.
+/// The law of [`Follow`], which is done when the leader is at rest nearby. In addition, either the leader must have
+/// moved since the law began, or the robot must have driven at least 0.9 m. The robot stands still while the leader's
+/// state is stale.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pursuing {
     robot: &'static str,
     /// `true` if the leader has moved since the law began.
     has_led: bool,
-    /// Length of the path driven since the law began, in metres.
+    /// Length of the robot's path since the law began, in metres.
     way: f64,
     /// Pose in the previous turn.
     last: Pose,
 }
 
 impl Pursuing {
-    /// Returns the leader's state while it is fresh; `None` otherwise.
+    /// Returns the leader's state if it is fresh; `None` if it is stale or not known.
     fn leader<'y, Y: StateLink>(&self, y: &'y Y) -> Option<&'y PeerState> {
         y.peer(self.robot)?.fresh()
     }
@@ -106,7 +107,8 @@ mod tests {
         y.link(Peer { name: "ada", rounds: 0, state: Some(state) });
     }
 
-    /// Returns the input of the first turn with a leader at this position and speed, whose state has this age.
+    /// Returns the input that the law returns in its first turn, for a leader at this position and speed whose state
+    /// has this age.
     fn asked(place: (f64, f64), v: f64, age: u64) -> [f64; 2] {
         let mut y = Sensed::default();
         see(&mut y, place, v, age);

@@ -10,7 +10,7 @@ pub struct Go {
 }
 
 impl Go {
-    /// Returns the quark `go v omega`: forward speed, and turn rate, counter-clockwise positive.
+    /// Creates the quark `go v omega`: forward speed, and turn rate, counter-clockwise positive.
     #[must_use]
     pub const fn new(v: MetersPerSecond, omega: RadiansPerSecond) -> Self {
         Self { input: Twist { v, omega } }

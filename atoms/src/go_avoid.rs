@@ -1,5 +1,5 @@
-//! `goAvoid ψ r v`: drives round obstacles to a point given by bearing and range (paper, section IV-A). The robot gives
-//! way to a person who approaches it, and waits for a person who is about to cross its way.
+//! `goAvoid ψ r v`: drives round obstacles to a point that is given by its bearing and range (paper, section IV-A). The
+//! robot gives way to a person who approaches it, and waits for a person who is about to cross its way.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{
@@ -15,12 +15,12 @@ use crate::tangent::{Obstacles, Side, Wish};
 use crate::way::Ahead;
 use crate::winding::Winding;
 
-/// Distance from the goal below which the goal is reached.
+/// Distance between the robot and the goal below which the goal is reached.
 const ARRIVED: Meters = Meters(0.12);
-/// Distance between the body and the goal, in metres, below which the robot is near enough if an obstacle keeps it from
-/// coming nearer. Odometry drifts, so a goal near a wall may end up inside the wall.
+/// Distance between the body and the goal, in metres, below which the robot is near enough if an obstacle prevents it
+/// from coming nearer. Odometry drifts, so a goal near a wall may seem to be inside the wall.
 const NEAR: f64 = 0.1;
-/// Time for which an obstacle must keep the robot, near the goal, from coming nearer before the law is done.
+/// Time for which an obstacle must prevent the robot from coming nearer to the nearby goal before the law is done.
 const KEPT_OFF: Nanos = Nanos(1_000_000_000);
 /// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 0.9;
@@ -28,33 +28,35 @@ const FASTEST: f64 = 0.9;
 const ON_THE_SPOT: Radians = Radians::from_degrees(50.0);
 /// Angle between the chosen direction and the goal's direction above which a detour begins.
 const DETOUR: Radians = Radians::from_degrees(60.0);
-/// Time after which a detour follows its obstacle instead of aiming at the goal, whose direction would lead back to
-/// where the detour began.
+/// Time after which a detour follows its obstacle and no longer aims at the goal, whose direction would lead back to
+/// the place where the detour began.
 const ALONG_AFTER: Nanos = Nanos(8_000_000_000);
-/// Angle from the heading towards the obstacle at which a robot aims while its detour follows the obstacle.
+/// While a detour follows its obstacle, the robot aims at a direction that is at this angle from its heading, on the
+/// side of the obstacle.
 const ALONG: Radians = Radians::from_degrees(40.0);
 /// Distance by which the robot must have come nearer to the goal before a detour ends; `DETOUR_LEAST` must have passed
 /// as well.
 const GAINED: Meters = Meters(0.1);
 /// Minimum duration of a detour.
 const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
-/// Minimum duration of a detour to a goal that another goal has replaced. The distance of such a goal need not be
-/// known, so the gain cannot be measured.
+/// Minimum duration of a detour whose goal has been replaced by another one. The distance of such a goal may be
+/// unknown, so it cannot be measured how much nearer the robot has come.
 const DETOUR_RENEWED: Nanos = Nanos(4_000_000_000);
 /// Angle from the goal's direction at which the robot gives way to an approaching person.
 const ASIDE: Radians = Radians::from_degrees(60.0);
-/// Durations of two phases that alternate while the robot makes no progress. For the duration `SQUEEZES` it follows
-/// ways on its map; then, for the duration `GOES_ROUND`, it goes round obstacles without the map, which is too small to
-/// show a way out of a large corner.
+/// Durations of two phases that alternate while the robot makes no progress. For the duration `SQUEEZES`, it follows
+/// ways on its map. Then, for the duration `GOES_ROUND`, it goes round obstacles without the map, because the map is
+/// too small to show a way out of a large corner.
 const SQUEEZES: Nanos = Nanos(30_000_000_000);
 const GOES_ROUND: Nanos = Nanos(60_000_000_000);
 /// Time without progress after which the robot follows ways on its map.
 const HELD_UP: Nanos = Nanos(1_200_000_000);
-/// Time without progress after which the robot counts as kept from coming nearer even if it hears no obstacle, and the
-/// distance at which it is near enough grows by the possible drift of odometry.
+/// Time without progress after which the law assumes that something prevents the robot from coming nearer, even if the
+/// sonars detect no obstacle. From then on, the possible drift of odometry is added to the distance at which the robot
+/// is near enough.
 const DRIFTS_AFTER: Nanos = Nanos(10_000_000_000);
-/// Possible drift of odometry, as a fraction of the distance driven, and its maximum, `DRIFTS_MOST`, in metres. A robot
-/// that searches drives without end, so without a maximum its law would eventually be done at any distance from the
+/// Possible drift of odometry, as a fraction of the distance driven, and its maximum, `DRIFTS_MOST`, in metres. Without
+/// a maximum, the law of a robot that drives about in search of a way would eventually be done at any distance from the
 /// goal.
 const DRIFTS: f64 = 0.02;
 const DRIFTS_MOST: f64 = 0.2;
@@ -68,8 +70,8 @@ pub struct GoAvoid {
 }
 
 impl GoAvoid {
-    /// Returns the quark `goAvoid bearing range speed`: the bearing in the frame in which the atom begins, the
-    /// range from the robot's place at that time, and the speed where the way is free.
+    /// Creates the quark `goAvoid bearing range speed`: the bearing in the frame in which the atom begins, the range
+    /// from the robot's position at that time, and the speed at which the robot drives where the way is free.
     #[must_use]
     pub const fn new(bearing: Radians, range: Meters, speed: MetersPerSecond) -> Self {
         Self { bearing, range, speed }
@@ -77,34 +79,37 @@ impl GoAvoid {
 }
 
 /// The law of [`GoAvoid`], which is done when the robot is within 0.12 m of the goal, or its body is within 0.1 m of
-/// the goal and something keeps it from coming nearer (docs/src/reference/language.md, 4).
+/// the goal and something prevents it from coming nearer (docs/src/reference/language.md, 4).
 ///
-/// Wheels that slip in turns make the heading by odometry wrong, and so the position of the goal. A robot that measures
-/// the drift of its heading at walls ([`Odometry::drift`]) therefore turns the goal by each change of the drift, around
-/// the place of the previous change. The law assumes that walls run along the axes of the frame.
+/// Wheels that slip in turns make the heading by odometry wrong, and therefore the position of the goal too. A robot
+/// that measures the drift of its heading at walls ([`Odometry::drift`]) therefore rotates the goal by each change of
+/// the drift, around the position at which the drift changed before. The law assumes that walls run along the axes of
+/// the frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoingRound {
     goal: Pose,
     /// `true` if another goal has replaced the first one.
     is_renewed: bool,
     progress: Progress,
-    /// The direction of the frame's first axis.
+    /// Direction of the frame's first axis.
     axis: Radians,
-    /// The drift of the heading for which the goal has been turned, and the pose at which the drift last changed.
+    /// The drift of the heading by which the goal has been rotated so far, and the pose at which the drift last
+    /// changed.
     drift: (Radians, Pose),
     speed: MetersPerSecond,
     look_ahead: Meters,
     /// Distance from the goal at which the robot is near enough.
     near: Meters,
-    /// Distance driven, in metres, and the pose in the last turn.
+    /// Distance driven so far, in metres, and the pose in the last turn.
     driven: (f64, Pose),
     winding: Winding,
     previous: Option<Radians>,
-    /// Time at which the robot first faced the direction that it had chosen, after its initial turn; `None` before that
-    /// time.
+    /// Time at which the robot first faced the direction that the law had chosen, after it had turned to this
+    /// direction; `None` before that time.
     headed: Option<Nanos>,
     detour: Option<Detour>,
-    /// Time from which something has kept the robot, already near the goal, from coming nearer; `None` if nothing does.
+    /// Time from which something has prevented the robot, already near the goal, from coming nearer; `None` if nothing
+    /// prevents it.
     kept_off: Option<Nanos>,
     passers: Passers,
     memory: Memory,
@@ -129,7 +134,7 @@ impl GoingRound {
         Self { goal: other.goal, is_renewed: true, progress, axis: other.axis, drift: other.drift, ..self }
     }
 
-    /// Turns the goal by the change of the drift, around the place at which the drift last changed.
+    /// Rotates the goal by the change of the drift, around the position at which the drift last changed.
     fn turn_goal(&mut self, drift: Radians, here: Pose) {
         let (before, at) = self.drift;
         if drift == before {
@@ -152,13 +157,15 @@ impl GoingRound {
         self.progress.stalled(here, &self.goal, t) > DRIFTS_AFTER
     }
 
-    /// Returns the distance from the goal at which the robot is near enough if something keeps it from coming nearer.
+    /// Returns the distance from the goal at which the robot is near enough if something prevents it from coming
+    /// nearer.
     fn near(&self, here: Pose, t: Nanos) -> Meters {
         let drifted = if self.is_lost(here, t) { (DRIFTS * self.driven.0).min(DRIFTS_MOST) } else { 0.0 };
         Meters(self.near.0 + drifted)
     }
 
-    /// Updates `kept_off`, depending on whether the robot is near the goal and something keeps it from coming nearer.
+    /// Updates `kept_off`, which depends on whether the robot is near the goal and something prevents it from coming
+    /// nearer.
     fn notice(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) {
         let Meters(distance) = here.distance(&self.goal);
         let is_in_the_way = obstacles.free(self.direction(here)).0 < distance - ARRIVED.0 || self.narrow.stands();
@@ -167,13 +174,13 @@ impl GoingRound {
         self.kept_off = self.kept_off.or(Some(t)).filter(|_| is_kept_off);
     }
 
-    /// Returns `true` if the detour has lasted long enough to follow its obstacle.
+    /// Returns `true` if the detour has lasted so long that it now follows its obstacle.
     fn goes_along(&self, t: Nanos) -> bool {
         self.detour.is_some_and(|detour| t.since(detour.since) > ALONG_AFTER)
     }
 
-    /// Returns the direction in which the robot gives way to this side. Once the robot has reached the wall on that
-    /// side, the direction runs along the wall.
+    /// Returns the direction in which the robot drives to give way to this side. When the robot has reached the wall on
+    /// that side, this is the direction along the wall.
     fn aside(&mut self, side: Side, goal: Radians, obstacles: &Obstacles, look_ahead: Meters) -> Radians {
         let aside = match side {
             Side::Left => Radians(goal.0 + ASIDE.0),
@@ -233,11 +240,11 @@ struct Chosen {
 }
 
 impl GoingRound {
-    /// Chooses a direction from the pings of the sonars; returns the input instead while the robot keeps out of the way
-    /// of a person who crosses.
+    /// Chooses a direction from the pings of the sonars. While the robot keeps out of the way of a person who crosses
+    /// it, returns the input as an error instead.
     ///
-    /// The function is not inlined, so that the obstacles have left the stack before [`Self::squeeze`] puts a
-    /// map there.
+    /// The function is not inlined, so that its obstacles are no longer on the stack when [`Self::squeeze`] puts a map
+    /// there.
     #[inline(never)]
     fn look<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos) -> Result<Chosen, Twist> {
         let mut obstacles = Obstacles::seen(y, here);

@@ -9,18 +9,19 @@ use mdle_runtime::{
 
 use crate::go_avoid::{GoAvoid, GoingRound};
 
-/// Additional room beside the outermost robot of the group, in metres, because the robots drift apart on the way.
+/// Additional room beside the outermost robot of the group, in metres. It is needed because the robots drift apart on
+/// the way.
 const DRIFTS: f64 = 0.1;
-/// Maximum error, in metres, of another robot's position by its own odometry. A leader that mistook the echo of a robot
-/// in its group for an obstacle would turn away endlessly, since that robot keeps its place beside the leader.
+/// Maximum error, in metres, of another robot's position by its own odometry. A leader that took the echo of a robot in
+/// its group for an obstacle would turn away endlessly, because that robot stays beside the leader.
 const MISPLACED: f64 = 0.25;
-/// Half of the angle within which a sonar hears.
+/// Half of the angle of the cone from which a sonar receives echoes.
 const CONE: Radians = Radians::from_degrees(15.0);
-/// Maximum turn rate, in rad/s, since the outermost robots drive on a larger circle.
+/// Maximum turn rate, in rad/s, limited because the outermost robots drive on a larger circle.
 const FASTEST: f64 = 0.3;
 
-/// The control `lead`: `goAvoid` for a body that is wider on both sides. It ignores echoes of the other robots that the
-/// plan names.
+/// The control `lead`: `goAvoid` for a body that is wider on both sides by the width of the group. It ignores echoes of
+/// the other robots that the plan names.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lead {
     width: Meters,
@@ -28,14 +29,14 @@ pub struct Lead {
 }
 
 impl Lead {
-    /// Returns the quark `lead width bearing range speed`.
+    /// Creates the quark `lead width bearing range speed`.
     #[must_use]
     pub const fn new(width: Meters, bearing: Radians, range: Meters, speed: MetersPerSecond) -> Self {
         Self { width, goal: GoAvoid::new(bearing, range, speed) }
     }
 }
 
-/// The law of [`Lead`], which is done when `goAvoid` is.
+/// The law of [`Lead`], which is done when the law of `goAvoid` is done.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Leading {
     width: Meters,
@@ -46,7 +47,7 @@ pub struct Leading {
     law: GoingRound,
 }
 
-/// The output of a group, presented as that of one wide robot.
+/// The output of a group, presented as the output of one wide robot.
 struct Group<'g, Y> {
     y: &'g Y,
     width: Meters,
@@ -185,7 +186,7 @@ mod tests {
     }
 
     /// Returns the output of a robot at the origin whose front sonar measures this range, and which has the state of
-    /// another robot at this place.
+    /// another robot at this position.
     fn beside(range: f64, (x, side): (f64, f64)) -> Sensed {
         let mut y = Sensed::default();
         (0..3).for_each(|_| y.ping(SonarId::new(0), Some(range)));

@@ -1,10 +1,11 @@
-//! The paper's quarks (section IV-A), for any robot whose output has the capabilities that they need.
+//! Contains the quarks of the paper (section IV-A), for any robot whose output has the capabilities that they need.
 //!
-//! A quark is a type that holds its arguments, in the order of `alphabet.mdle`, and requires the capabilities
-//! that the alphabet names. `wait` is not a type of this crate, since the machine handles time.
+//! Each quark is a type that contains the arguments of the quark, in the order of `alphabet.mdle`, and requires the
+//! capabilities that the alphabet names for the quark. `wait` is not a type of this crate, since the machine handles
+//! time.
 //!
-//! The crate does not allocate, has no unsafe code and cannot panic; its trigonometry is from `libm`, so that a
-//! law computes the same bits on every machine.
+//! The crate does not allocate, has no unsafe code and cannot panic. It uses the trigonometric functions of `libm`, so
+//! that the results of a law are the same, bit for bit, on every machine.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(clippy::indexing_slicing)]

@@ -1,5 +1,6 @@
-//! A map of the robot's surroundings as the sonars have heard them (an occupancy grid). For each cell of a square, it
-//! records how often an echo came from the cell and how often a ping passed it. The map moves with the robot.
+//! A map of the obstacles around the robot, made from the echoes of its sonars (an occupancy grid). For each cell of a
+//! square, it records evidence: how often an echo came from the cell, and how often a ping passed it. The map moves
+//! with the robot.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
@@ -14,32 +15,34 @@ pub(crate) const CELL: f64 = 0.05;
 const ROWS: usize = CELLS as usize;
 /// Size of a row, in bytes; a byte contains two cells.
 const BYTES: usize = ROWS / 2;
-/// Evidence of an unknown cell.
+/// Value of the evidence in an unknown cell.
 const UNKNOWN: u8 = 4;
-/// Evidence of a row of unknown cells.
+/// Values of the evidence in a row of unknown cells.
 const UNKNOWN_ROW: [u8; BYTES] = [UNKNOWN | UNKNOWN << 4; BYTES];
-/// Evidence from which a cell is occupied.
+/// Minimum evidence of an occupied cell.
 const OCCUPIED: u8 = 8;
-/// Evidence that an echo adds.
+/// Amount by which an echo increases the evidence of a cell.
 const HIT: u8 = 4;
 /// Maximum evidence of a cell.
 const MOST: u8 = 13;
-/// Evidence that a passing ping removes.
+/// Amount by which a passing ping decreases the evidence of a cell.
 const MISS: u8 = 2;
 /// Angles from a sonar's axis, in degrees, of the points that represent an echo.
 const ARC: [f64; 9] = [-12.0, -9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0, 12.0];
 /// Rays along which a ping marks cells as free: the angle from the sonar's axis, in degrees, and the distance from the
-/// transducer, in metres, at which the marking begins. Nearer cells belong to another ray.
+/// transducer, in metres, at which the marking begins. Nearer cells are marked by another ray.
 const RAYS: [(f64, f64); 5] = [(0.0, 0.0), (-11.0, 0.26), (11.0, 0.26), (-5.5, 0.52), (5.5, 0.52)];
 /// Distance from the transducer, in metres, up to which a ping changes the map.
 const WITHIN: f64 = 1.6;
-/// Range, in metres, that replaces a range below the minimum, at which the obstacle may be anywhere nearer.
+/// Range, in metres, that is used in place of a range that is too small to be exact: the obstacle may then be at any
+/// smaller distance.
 const INSTEAD: f64 = 0.1;
 /// Maximum absolute index of a cell, so that the difference of two indices does not overflow.
 const FURTHEST: f64 = 1e8;
-/// Number of turns in which each sonar is read once, on a robot whose sonars all ping in every turn.
+/// Number of parts into which the sonars are divided, on a robot whose sonars all ping in every turn. In each turn, one
+/// part is read.
 const THIRDS: usize = 3;
-/// Distance before an echo, in metres, from which a cell is not marked as free.
+/// Cells nearer to an echo than this distance, in metres, are not marked as free.
 const BEFORE: f64 = 0.08;
 
 /// A cell, given by its indices along both axes of the odometry coordinates.
@@ -50,7 +53,7 @@ pub(crate) struct Cell {
 }
 
 impl Cell {
-    /// Returns the cell that contains this place.
+    /// Returns the cell that contains this position.
     pub(crate) fn of(x: f64, y: f64) -> Self {
         let [x, y] = [x, y].map(|metres| below((metres / CELL).clamp(-FURTHEST, FURTHEST)));
         Self { x, y }
@@ -62,9 +65,9 @@ impl Cell {
     }
 }
 
-/// Returns the largest whole number that is at most `number`. The absolute value of `number` is at most [`FURTHEST`]. A
-/// ping passes many cells, so `floor` of `libm`, or a conversion that checks for overflow, would take most of the
-/// turn's time.
+/// Returns the largest whole number that is at most `number`. The absolute value of `number` is at most [`FURTHEST`].
+/// This function is fast: a ping passes many cells, so `floor` of `libm`, or a conversion that checks for overflow,
+/// would take most of the time of a turn.
 fn below(number: f64) -> i32 {
     // In a sum of this size, the last bit of the mantissa counts ones, so the low bits contain the nearest whole
     // number.
@@ -74,7 +77,7 @@ fn below(number: f64) -> i32 {
     sum.to_bits() as i32 - i32::from(sum - ROUNDS > number)
 }
 
-/// Evidence for obstacles around the robot.
+/// A map of the evidence for obstacles around the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Map {
     evidence: [[u8; BYTES]; ROWS],
@@ -124,7 +127,7 @@ impl Map {
         }
     }
 
-    /// Marks as free the cells that a ping from this place passed in the direction of `axis`, up to the distance
+    /// Marks as free the cells that a ping from this position passed in the direction of `axis`, up to the distance
     /// `free`.
     fn pass(&mut self, from: Pose, axis: Radians, free: f64) {
         let end = libm::floor(free / CELL).max(0.0) as i32 + 1;
@@ -140,7 +143,7 @@ impl Map {
         }
     }
 
-    /// Returns `true` if the map already has an object nearer than `least` in the cone of a sonar at this place.
+    /// Returns `true` if the map already has an object nearer than `least` in the cone of a sonar at this position.
     fn explains(&self, from: Pose, axis: Radians, least: f64) -> bool {
         ARC.iter().any(|degrees| {
             let (sin, cos) = libm::sincos(axis.0 + 2.0 * degrees.to_radians());
@@ -152,8 +155,8 @@ impl Map {
         })
     }
 
-    /// Records an echo. If a cell on the echo's arc is occupied, the cells with the most evidence get more; otherwise
-    /// all cells on the arc become occupied.
+    /// Records an echo. If a cell on the echo's arc is occupied, the evidence of the cells that have the most is
+    /// increased; otherwise all cells on the arc become occupied.
     fn hit(&mut self, from: Pose, axis: Radians, range: f64) {
         let cells = ARC.map(|degrees| {
             let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
@@ -175,7 +178,8 @@ impl Map {
         byte.map_or(UNKNOWN, |byte| byte >> shift & 15)
     }
 
-    /// Applies `to` to the evidence of cells; a cell that is repeated in succession is changed only once.
+    /// Applies `to` to the evidence of each cell. If the same cell comes several times in succession, it is changed
+    /// only once.
     fn once(&mut self, cells: impl Iterator<Item = Cell>, to: impl Fn(u8) -> u8) {
         let mut last = None;
         for cell in cells {
@@ -186,7 +190,7 @@ impl Map {
         }
     }
 
-    /// Moves the map so that the robot is in its middle, and resets the cells that have come onto the map to unknown.
+    /// Moves the map so that the robot is in its middle, and resets the cells that are new on the map to unknown.
     fn move_to(&mut self, here: Pose) {
         let Cell { x, y } = Cell::of(here.x.0, here.y.0);
         let corner = Cell { x: x - CELLS / 2, y: y - CELLS / 2 };
@@ -268,8 +272,9 @@ impl Map {
         })
     }
 
-    /// Returns the centres of the occupied cells at most `within` metres off the robot along both axes, relative to
-    /// the robot at `here`. The cells come square by square around the robot's own cell, from the innermost square on.
+    /// Returns the centres of the occupied cells whose distance from the robot along each axis is at most `within`
+    /// metres. The centres are relative to the robot at `here`, and are ordered by squares around the robot's own cell,
+    /// from the innermost square outwards.
     pub(crate) fn around(&self, here: Pose, within: Meters) -> impl Iterator<Item = (f64, f64)> {
         let middle = Cell::of(here.x.0, here.y.0);
         let reach = libm::ceil(within.0 / CELL) as i32;
@@ -296,7 +301,7 @@ pub(crate) fn is_unknown(evidence: u8) -> bool {
 }
 
 /// Returns the row and the byte in which a cell's evidence is stored, and the number of bits by which the evidence is
-/// shifted in this byte. They do not change when the map moves.
+/// shifted in this byte. These values do not change when the map moves.
 #[inline]
 fn place(Cell { x, y }: Cell) -> (usize, usize, u8) {
     const { assert!(ROWS.is_power_of_two()) };
@@ -306,7 +311,7 @@ fn place(Cell { x, y }: Cell) -> (usize, usize, u8) {
 
 #[cfg(test)]
 impl Map {
-    /// Marks every cell along a line between two places, in metres, around a robot at the origin, as occupied.
+    /// Marks as occupied every cell along a line between two positions, in metres. The robot is at the origin.
     pub(crate) fn occupy(&mut self, from: (f64, f64), to: (f64, f64)) {
         self.move_to(Pose::ORIGIN);
         let steps = libm::ceil(libm::hypot(to.0 - from.0, to.1 - from.1) / CELL) as i32;
@@ -330,7 +335,7 @@ mod tests {
         (0..THIRDS).for_each(|_| map.take(y, y.pose));
     }
 
-    /// Updates the map with pings straight ahead, 0.1 s apart.
+    /// Returns a map that has been updated with pings straight ahead, 0.1 s apart, and the last output.
     fn heard(ranges: &[Option<f64>], confirmation: usize) -> (Map, Sensed) {
         let (mut y, mut map) = (Sensed { confirmation, ..Sensed::default() }, Map::EMPTY);
         for range in ranges {

@@ -1,19 +1,19 @@
-//! Keeps the places of the echoes of the last seconds, because on a detour out of a corner the sonars do not hear all
-//! of the corner at once.
+//! Stores the positions of the echoes of the last seconds. On a detour out of a corner, the sonars do not receive
+//! echoes from all of the corner at once.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
-/// Maximum number of places kept.
+/// Maximum number of stored positions.
 pub(crate) const PLACES: usize = 96;
-/// Distance, in metres, below which echoes count as one place.
+/// Distance, in metres, below which echoes are treated as one position.
 const ONE_PLACE: f64 = 0.1;
-/// Time after which a place is forgotten, so that an object that has left does not remain.
+/// Time after which a position is forgotten, so that an object that has left does not remain.
 const KEPT: Nanos = Nanos(15_000_000_000);
-/// Range, in metres, beyond which echoes are not kept.
+/// Range, in metres, beyond which echoes are not stored.
 const NEAR: f64 = 1.2;
 
-/// A place of an echo, in odometry coordinates, with the time of the last echo there.
+/// A position of echoes, in odometry coordinates, with the time of the last echo there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Echo {
     x: f64,
@@ -21,18 +21,18 @@ struct Echo {
     at: Nanos,
 }
 
-/// Places of echoes.
+/// Stores positions of echoes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Memory {
     echoes: [Echo; PLACES],
-    /// Number of places kept, from the first one on.
+    /// Number of stored positions, from the first entry on.
     count: usize,
 }
 
 impl Memory {
     pub(crate) const EMPTY: Self = Self { echoes: [Echo { x: 0.0, y: 0.0, at: Nanos::ZERO }; PLACES], count: 0 };
 
-    /// Stores the places of the sonars' newest echoes, except those beyond `NEAR`.
+    /// Stores the positions of the sonars' newest echoes, except those beyond `NEAR`.
     pub(crate) fn take<Y: SonarRing>(&mut self, y: &Y) {
         for number in 0..SONARS as u8 {
             let sonar = SonarId::new(number);
@@ -46,8 +46,8 @@ impl Memory {
         }
     }
 
-    /// Stores an echo. If a stored place is within 10 cm of it, only the time of that place is updated. Otherwise the
-    /// echo takes a free entry, or replaces the oldest one.
+    /// Stores an echo. If a stored position is within 10 cm of it, only the time of that position is updated. Otherwise
+    /// the echo takes a free entry, or replaces the oldest one.
     fn keep(&mut self, heard: Echo) {
         let same = |place: &Echo| {
             let (x, y) = (place.x - heard.x, place.y - heard.y);
@@ -64,8 +64,8 @@ impl Memory {
         }
     }
 
-    /// Returns the places that are not forgotten at this time, relative to `here`, along the axes of the odometry
-    /// coordinates.
+    /// Returns the positions that are not forgotten at the time `now`, relative to `here`, along the axes of the
+    /// odometry coordinates.
     pub(crate) fn around(&self, here: Pose, now: Nanos) -> impl Iterator<Item = (f64, f64)> {
         let kept = self.echoes.iter().take(self.count).filter(move |place| now.since(place.at) < KEPT);
         kept.map(move |place| (place.x - here.x.0, place.y - here.y.0))
@@ -77,8 +77,8 @@ mod tests {
     use super::*;
     use crate::trial::Sensed;
 
-    /// Returns the number of places kept after `pings` straight ahead, each with the robot's distance along the first
-    /// axis and the range.
+    /// Returns the number of positions that are stored after the given pings straight ahead. Each ping is given by the
+    /// distance of the robot along the first axis and the range.
     fn kept(pings: &[(f64, f64)], now: u64) -> usize {
         let (mut y, mut memory) = (Sensed::default(), Memory::EMPTY);
         for (x, range) in pings {

@@ -1,26 +1,28 @@
-//! Signals of numbers that modules publish, and `goAvoid` towards a goal that a module publishes (paper, sections III-B
-//! and IV-B).
+//! Contains the signals that read the numbers that modules publish, and `goAvoid` towards a goal that a module
+//! publishes (paper, sections III-B and IV-B).
 
 use mdle_runtime::capability::{DiffDrive, Modules, Odometry, SonarRing};
 use mdle_runtime::{Begin, Control, Law, Meters, MetersPerSecond, Nanos, Radians, Signal, Twist};
 
 use crate::go_avoid::{GoAvoid, GoingRound};
 
-/// Attribute of a module with the direction to a point, in radians, relative to the robot's heading.
+/// Name of the attribute of a module that contains the direction to a point, in radians, relative to the robot's
+/// heading.
 const BEARING: &str = "bearing";
-/// Attribute of a module with the distance to a point, in metres.
+/// Name of the attribute of a module that contains the distance to a point, in metres.
 const RANGE: &str = "range";
-/// Attribute of every module: the time, in seconds, since the module published the attributes that the plan reads.
+/// Name of an attribute that every module has: the time, in seconds, since the module published the attributes that the
+/// plan reads.
 const AGE: &str = "age";
 /// Age from which a direction is stale.
 const STALE: Nanos = Nanos(2_000_000_000);
 /// Assumed distance to a goal whose module publishes no range.
 const FAR: Meters = Meters(5.0);
-/// Speed where the way is free.
+/// Speed, in m/s, at which the robot drives where the way is free.
 const SPEED: MetersPerSecond = MetersPerSecond(0.2);
 
-/// Declares module signals. Takes, for each signal, the name of its type, a doc comment, and an expression for its
-/// value.
+/// Declares module signals. The macro takes, for each signal, the name of its type, a doc comment, and an expression
+/// for its value.
 macro_rules! signals {
     ($($name:ident $doc:literal |$y:ident, $module:ident| $value:expr;)*) => {$(
         #[doc = $doc]
@@ -28,7 +30,7 @@ macro_rules! signals {
         pub struct $name(&'static str);
 
         impl $name {
-            /// Returns the signal of this module.
+            /// Creates the signal of this module.
             #[must_use]
             pub const fn new(of: &'static str) -> Self {
                 Self(of)
@@ -59,7 +61,7 @@ signals! {
 pub struct GoAvoid2(&'static str);
 
 impl GoAvoid2 {
-    /// Returns the quark `goAvoid target`, where `target` names a module that publishes `bearing` and, optionally,
+    /// Creates the quark `goAvoid target`, where `target` names a module that publishes `bearing` and, optionally,
     /// `range`.
     #[must_use]
     pub const fn new(target: &'static str) -> Self {

@@ -1,5 +1,5 @@
-//! Moves `goAvoid` through narrow places: along the shortest way on a map of echoes, with movements in which the body,
-//! a disc or a rectangle, touches nothing on the map.
+//! Moves `goAvoid` through narrow places: the robot follows the shortest way on a map of echoes, and makes only
+//! movements in which its body, a disc or a rectangle, touches nothing on the map.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
@@ -15,15 +15,15 @@ const ROOM: f64 = 0.1;
 const LEAVES: Meters = Meters(0.4);
 /// Time between two searches for a way.
 const SEARCHES: Nanos = Nanos(500_000_000);
-/// Time for which the last way remains valid if the searches find no way, since single pings close and open gaps on the
-/// map.
+/// Time for which the last way remains valid if the searches find no way, because single pings can close and reopen
+/// gaps on the map.
 const COUNTS: Nanos = Nanos(2_000_000_000);
 /// Maximum speed, in m/s.
 const FASTEST: f64 = 0.12;
-/// Distance, in metres, of the place to which a rectangle drives if there is no way on the map.
+/// Distance, in metres, to the place to which a rectangular body drives if there is no way on the map.
 const AHEAD: Meters = Meters(0.4);
-/// Maximum time for which the robot only turns on the spot. After this time it drives with less room, since the cells
-/// of the map are coarse.
+/// Maximum time for which the robot only turns on the spot. After this time, it drives with less room, because the
+/// cells of the map are coarse.
 const STANDS: Nanos = Nanos(4_000_000_000);
 
 /// The map, and the way on it.
@@ -59,13 +59,13 @@ impl Narrow {
         self.way.is_some()
     }
 
-    /// Forgets the way on the map, and the time at which the robot stopped driving.
+    /// Forgets the way on the map, and the time since which the robot has only turned on the spot.
     pub(crate) fn leave(&mut self) {
         (self.way, self.stands) = (None, None);
     }
 
-    /// Returns the input that keeps the robot away from obstacles that it no longer hears, as it drives around them in
-    /// the direction `chosen`; `None` if there is enough room.
+    /// Returns the input that keeps the robot away from obstacles whose echoes it no longer receives, while it drives
+    /// around them in the direction `chosen`; `None` if there is enough room.
     pub(crate) fn round<Y: DiffDrive>(
         &self,
         y: &Y,
@@ -82,7 +82,7 @@ impl Narrow {
         self.towards(y, here, next, (speed, winding), false)
     }
 
-    /// Returns the input of a robot at `here`; `None` if the tangent rule suffices.
+    /// Returns the input of a robot at `here`; `None` if the tangent rule chooses the input.
     pub(crate) fn input<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, mut ahead: Ahead) -> Option<Twist> {
         let more = if self.way.is_some() { LEAVES } else { Meters(0.0) };
         let is_free = ahead.free.is_some_and(|(free, asked)| free.0 >= asked.0 + more.0);
@@ -110,8 +110,8 @@ impl Narrow {
 
     /// Returns the input that brings the body nearest to a place; `None` if every movement would touch something.
     ///
-    /// The function is not inlined, like [`Self::has_room`], so that the surroundings are not on the stack together
-    /// with the map of [`way`].
+    /// The function is not inlined, like [`Self::has_room`], so that its surroundings are not on the stack at the same
+    /// time as the map of [`way`].
     #[inline(never)]
     fn towards<Y: DiffDrive>(
         &self,

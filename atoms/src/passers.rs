@@ -1,4 +1,4 @@
-//! Decides how a robot reacts to the people whom it hears on its way: it gives way to a person who approaches, and
+//! Decides how a robot reacts to people on its way whom its sonars detect: it gives way to a person who approaches, and
 //! stops, or backs off, for a person who crosses the way.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
@@ -9,18 +9,18 @@ use crate::crossing::crosses;
 use crate::gains::fire_in_turn;
 use crate::tangent::{Obstacles, Side};
 
-/// Minimum room on the robot's right with which it gives way to the right, as people do. With less room, it gives way
-/// to the side with more room.
+/// Minimum room on the robot's right at which the robot gives way to the right, as people do. With less room, it gives
+/// way to the side with more room.
 const ROOM: Meters = Meters(0.4);
 /// Time, in seconds, for which the robot keeps out of the way after a person should have passed.
 const PASSES: f64 = 1.0;
-/// Maximum time, in seconds, for which the robot keeps out of the way of a person whom it no longer hears approach.
+/// Maximum time, in seconds, for which the robot keeps out of the way of a person whose approach it no longer detects.
 const PASSES_MOST: f64 = 8.0;
-/// Number of consecutive turns in which the robot must hear a crossing person. A wall that the edge of a cone touches
-/// is heard in fewer turns.
+/// Number of consecutive turns in which the robot must detect a crossing person before it reacts. A wall that the edge
+/// of a cone touches is mistaken for a person in fewer turns.
 const SURE: u32 = 5;
 /// Minimum time, in seconds, for which the robot stands still for a person who is about to cross its way; it stands
-/// until the person should have passed.
+/// still at least until the person should have passed.
 const STANDS: f64 = 2.5;
 /// Minimum free length of the way behind a robot that backs off.
 const BEHIND: Meters = Meters(0.25);
@@ -30,11 +30,12 @@ const BEHIND: Meters = Meters(0.25);
 pub(crate) struct Passers {
     approach: Approach,
     gives_way: Option<GivesWay>,
-    /// Number of turns in a row in which a person was about to cross the way.
+    /// Number of consecutive turns up to now in which a person was about to cross the way.
     crossed: u32,
     /// Time until which the robot stands still, because a person crosses its way.
     stands_until: Nanos,
-    /// Pose at which the robot last heard this person, and the distance, in metres, by which it backs off from there.
+    /// Pose at which the robot last detected this person, and the distance, in metres, by which it backs off from
+    /// there.
     back: (Pose, f64),
 }
 
@@ -80,7 +81,7 @@ impl Passers {
         }
     }
 
-    /// Detects a person who approaches along the way to the goal, so that the robot gives way.
+    /// Detects a person who approaches along the way to the goal, and makes the robot give way.
     fn look_ahead<Y: SonarRing>(&mut self, y: &Y, obstacles: &Obstacles, here: Pose, goal: Radians, t: Nanos) {
         self.approach.take(y, here, goal);
         let gives_way = self.gives_way.filter(|gives_way| t < gives_way.until);
@@ -119,7 +120,7 @@ fn after(t: Nanos, seconds: f64) -> Nanos {
     Nanos(t.0.saturating_add((seconds * 1e9) as u64))
 }
 
-/// Returns the side to which the robot gives way, given the room on both sides.
+/// Returns the side to which the robot gives way, which depends on the room on both sides.
 fn freer(obstacles: &Obstacles, goal: Radians) -> Side {
     let [left, right] = [90.0, -90.0].map(|side| obstacles.free(Radians(goal.0 + Radians::from_degrees(side).0)));
     if right >= ROOM || right >= left { Side::Right } else { Side::Left }

@@ -1,8 +1,8 @@
 //! `path file`: replays the headings and forward speeds of a file (paper, section IV-A).
 //!
 //! Between two setpoints, heading and speed are interpolated linearly, the heading along the shorter turn. The replay
-//! is therefore independent of the period of the recording and of the period of the replay. Without interpolation,
-//! heading and speed would lag by half a row, and the heading would change in steps.
+//! therefore depends neither on the period of the recording nor on the period of the replay. Without interpolation,
+//! heading and speed would lag by half the time between two setpoints, and the heading would change in steps.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, Paths};
 use mdle_runtime::{
@@ -19,7 +19,7 @@ pub struct Path {
 }
 
 impl Path {
-    /// Returns the quark `path file`; the headings of the file are relative to the frame in which the atom begins.
+    /// Creates the quark `path file`; the headings in the file are relative to the frame in which the atom begins.
     #[must_use]
     pub const fn new(file: &'static str) -> Self {
         Self { file }
@@ -27,7 +27,8 @@ impl Path {
 }
 
 /// The law of [`Path`], which is done at the time of the last setpoint. If there is no path of this name, the robot
-/// stands still and the law is never done, because the elements after it assume that the path was driven.
+/// stands still and the law is never done, because the elements of the plan after it assume that the path has been
+/// driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replaying {
     file: &'static str,
@@ -38,7 +39,7 @@ pub struct Replaying {
     before: Option<Nanos>,
 }
 
-/// The heading, turn rate and speed that a path requires at a certain time.
+/// The heading, turn rate and speed that a path contains for a certain time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Asked {
     heading: Radians,
@@ -48,8 +49,8 @@ struct Asked {
 }
 
 impl Asked {
-    /// Returns the interpolated setpoint of `path` at the time `at` since the path began; `None` before its first
-    /// setpoint and from its last one on.
+    /// Returns the interpolated setpoint of `path` at the time `at`, counted from the beginning of the path; `None`
+    /// before its first setpoint and from its last one on.
     fn of(path: &[Setpoint], at: Nanos) -> Option<Self> {
         let next = path.partition_point(|setpoint| setpoint.at <= at);
         let (from, to) = (path.get(next.checked_sub(1)?)?, path.get(next)?);
@@ -107,7 +108,8 @@ mod tests {
         }
     }
 
-    /// A path with 1 s ahead, half a circle to the left through 180° in 2 s, and 1 s ahead.
+    /// A path that consists of 1 s straight ahead, half a circle to the left through the heading 180° in 2 s, and 1 s
+    /// straight ahead.
     static BEND: [Setpoint; 4] =
         [setpoint(0, 90.0, 0.2), setpoint(1000, 90.0, 0.2), setpoint(3000, -100.0, 0.4), setpoint(4000, -100.0, 0.0)];
     static PATHS: [StoredPath; 1] = [StoredPath { name: "bend", setpoints: &BEND }];
@@ -116,8 +118,8 @@ mod tests {
         Sensed { paths: PathStore::new(&PATHS), ..Sensed::heading(degrees) }
     }
 
-    /// Returns the number of turns, at most a thousand, until the law is done, in an atom that replays the path `file`
-    /// and begins at the time `from`.
+    /// Runs an atom that replays the path `file` and begins at the time `from`. Returns the number of turns until its
+    /// law is done, at most 1000.
     fn replayed(file: &'static str, y: &mut Sensed, mut begin: Begin, from: u64) -> u64 {
         let millis = |number: u64| Nanos((from + number * 100) * 1_000_000);
         begin.now = millis(0);

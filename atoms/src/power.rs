@@ -1,14 +1,15 @@
-//! `lowBattery`, `charger` and the signal `battery`, for plans that bring their robot home (not in the paper).
+//! The interrupts `lowBattery` and `charger` and the signal `battery`, for plans that bring their robot back to its
+//! charger (not in the paper).
 
 use mdle_runtime::capability::Power;
 use mdle_runtime::{Interrupt, Signal};
 
-/// The interrupt `lowBattery`, which fires while the robot reports a low battery, by the robot's own limit.
+/// The interrupt `lowBattery`, which fires while the robot reports a low battery, which it decides by its own limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LowBattery;
 
 impl LowBattery {
-    /// Returns the quark `lowBattery`.
+    /// Creates the quark `lowBattery`.
     #[must_use]
     pub const fn new() -> Self {
         Self
@@ -26,7 +27,7 @@ impl<Y: Power> Interrupt<Y> for LowBattery {
 pub struct Charger;
 
 impl Charger {
-    /// Returns the quark `charger`.
+    /// Creates the quark `charger`.
     #[must_use]
     pub const fn new() -> Self {
         Self
@@ -44,7 +45,7 @@ impl<Y: Power> Interrupt<Y> for Charger {
 pub struct Battery;
 
 impl Battery {
-    /// Returns the signal `battery`.
+    /// Creates the signal `battery`.
     #[must_use]
     pub const fn new() -> Self {
         Self

@@ -1,4 +1,4 @@
-//! `rotate α`: turns to a heading in the current frame, the shortest way round (paper, section IV-A).
+//! `rotate α`: turns to a heading in the current frame, by the shorter turn (paper, section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Begin, Completes, Control, Law, Nanos, Radians, Twist};
@@ -12,7 +12,7 @@ pub struct Rotate {
 }
 
 impl Rotate {
-    /// Returns the quark `rotate heading`, for a heading in the frame in which the atom begins.
+    /// Creates the quark `rotate heading`, for a heading in the frame in which the atom begins.
     #[must_use]
     pub const fn new(heading: Radians) -> Self {
         Self { heading }
@@ -21,7 +21,8 @@ impl Rotate {
 
 /// The law of [`Rotate`], which is done when the robot is at rest within 2° of the heading.
 ///
-/// A robot that measures the drift of its heading at a wall corrects the final heading by it when the atom begins.
+/// A robot that measures the drift of its heading at a wall corrects the final heading by this drift when the atom
+/// begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotating {
     /// The final heading by odometry.
@@ -31,7 +32,7 @@ pub struct Rotating {
 }
 
 impl Rotating {
-    /// Returns the angle left to turn, the shortest way round.
+    /// Returns the remaining angle, by the shorter turn.
     fn left<Y: Odometry>(&self, y: &Y) -> Radians {
         Radians(self.goal.0 - y.pose().theta.0).wrapped()
     }

@@ -8,7 +8,7 @@ use mdle_runtime::{Signal, SonarId};
 pub struct R(SonarId);
 
 impl R {
-    /// Returns the signal of this sonar.
+    /// Creates the signal of this sonar.
     #[must_use]
     pub const fn new(which: SonarId) -> Self {
         Self(which)
@@ -27,7 +27,7 @@ impl<Y: SonarRing> Signal<Y> for R {
 pub struct Age(SonarId);
 
 impl Age {
-    /// Returns the signal of this sonar.
+    /// Creates the signal of this sonar.
     #[must_use]
     pub const fn new(which: SonarId) -> Self {
         Self(which)
@@ -50,7 +50,7 @@ macro_rules! signals {
         pub struct $name;
 
         impl $name {
-            /// Returns the signal.
+            /// Creates the signal.
             #[must_use]
             #[allow(clippy::new_without_default, reason = "as bound alphabets have it")]
             pub const fn new() -> Self {

@@ -1,20 +1,22 @@
-//! `slot`: keeps a place beside a robot that leads a formation (paper, sections II-C and III-G: group atoms).
+//! `slot`: keeps the robot at a position beside a robot that leads a formation (paper, sections II-C and III-G: group
+//! atoms).
 
 use mdle_runtime::capability::{DiffDrive, Odometry, StateLink};
 use mdle_runtime::{
     Begin, Control, Law, Meters, MetersPerSecond, Nanos, PeerState, Pose, Radians, RadiansPerSecond, Twist,
 };
 
-/// Speed of the correction, in m/s per metre of distance from the slot.
+/// Speed of the correction, in m/s for each metre of distance from the slot.
 const CORRECTS: f64 = 1.0;
-/// Distance, in metres, of the steered point ahead of the robot's centre. A point on the axle could not move sideways.
+/// Distance, in metres, from the robot's centre to the steered point ahead of it. A point on the axle could not be
+/// moved sideways.
 const AHEAD: f64 = 0.1;
-/// Time constant, in seconds, with which the direction of the formation follows the leader's heading. Without the
-/// delay, the outer slots would move too fast.
+/// Time constant, in seconds, with which the direction of the formation follows the leader's heading. Without this
+/// delay, the slots far from the leader would move too fast.
 const TURNS_IN: f64 = 1.5;
 /// Age from which the leader's state is stale.
 const SILENT: Nanos = Nanos(1_000_000_000);
-/// Speed, in m/s, below which a slot has no direction of motion.
+/// Speed, in m/s, below which a slot is treated as having no direction of motion.
 const AT_REST: f64 = 0.02;
 /// Distance from a slot at rest, in metres, within which the robot stands still.
 const NEAR: f64 = 0.03;
@@ -22,9 +24,9 @@ const NEAR: f64 = 0.03;
 const FASTEST: (f64, f64) = (0.5, 1.5);
 
 /// The control `slot`: `u = f + k (g + l f/|f| - q - l e)`, `v = u·e`, `ω = u·n/l`. The point at the distance `l` ahead
-/// of the robot, which is at `q` with the heading `e`, follows the point ahead of its slot `g`, which moves with the
-/// velocity `f`. The direction of the formation is the leader's heading after a low-pass filter with the time constant
-/// `TURNS_IN`.
+/// of the robot, whose position is `q` and whose heading is the unit vector `e`, follows the point ahead of its slot,
+/// whose position is `g` and whose velocity is `f`. The direction of the formation is the leader's heading after a
+/// low-pass filter with the time constant `TURNS_IN`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slot {
     leader: &'static str,
@@ -33,14 +35,14 @@ pub struct Slot {
 }
 
 impl Slot {
-    /// Returns the quark `slot leader ahead left`.
+    /// Creates the quark `slot leader ahead left`.
     #[must_use]
     pub const fn new(leader: &'static str, ahead: Meters, left: Meters) -> Self {
         Self { leader, ahead, left }
     }
 }
 
-/// The law of [`Slot`]. The robot stands still while the leader's state is a second old or older.
+/// The law of [`Slot`]. The robot stands still while the leader's state is at least one second old.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Keeping {
     slot: Slot,
@@ -64,8 +66,8 @@ impl<Y: DiffDrive + Odometry + StateLink> Control<Y> for Slot {
 }
 
 impl Keeping {
-    /// Returns the position and velocity of the slot at time `t`, extrapolated from the leader's state, which was taken
-    /// in an earlier turn.
+    /// Returns the position and velocity of the slot at time `t`, extrapolated from the leader's state, which belongs
+    /// to an earlier turn.
     fn place(&mut self, leader: &PeerState, t: Nanos) -> Moving {
         let since = self.direction.map_or(0.0, |(_, before)| t.since(before).seconds());
         // The age counts from the turn in which the state arrived, one turn after it was sent.

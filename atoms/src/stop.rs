@@ -8,7 +8,7 @@ use mdle_runtime::{Begin, Control, Law, Nanos, Twist};
 pub struct Stop;
 
 impl Stop {
-    /// Returns the quark `stop`.
+    /// Creates the quark `stop`.
     #[must_use]
     pub const fn new() -> Self {
         Self

@@ -1,5 +1,5 @@
-//! `stuck T`: fires when the law that runs makes no progress towards its goal. The interrupt is an addition of this
-//! project to the paper's `goAvoid` (docs/src/reference/semantics.md, 3.5).
+//! `stuck T`: fires when the law that runs makes no progress towards its goal. The interrupt is not in the paper; this
+//! project has added it beside the paper's `goAvoid` (docs/src/reference/semantics.md, 3.5).
 
 use mdle_runtime::capability::Odometry;
 use mdle_runtime::{Interrupt, Meters, Nanos, Pose};
@@ -7,14 +7,14 @@ use mdle_runtime::{Interrupt, Meters, Nanos, Pose};
 /// Length, in metres, by which a law must come nearer to its goal to have made progress.
 const NEARER: f64 = 0.1;
 
-/// The interrupt `stuck`, which fires once the law of the previous turn has made no progress for `duration`.
+/// The interrupt `stuck`, which fires when the law of the previous turn has made no progress for `duration`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stuck {
     duration: Nanos,
 }
 
 impl Stuck {
-    /// Returns the quark `stuck duration`.
+    /// Creates the quark `stuck duration`.
     #[must_use]
     pub const fn new(duration: Nanos) -> Self {
         Self { duration }
@@ -22,7 +22,7 @@ impl Stuck {
 }
 
 impl<Y: Odometry> Interrupt<Y> for Stuck {
-    /// Returns `false`, as the output alone does not show progress towards a goal.
+    /// Returns `false`, because the output alone does not show progress towards a goal.
     fn fired(&self, _: &Y) -> bool {
         false
     }
@@ -42,17 +42,17 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Returns the progress of a law that begins at this time and place.
+    /// Returns the progress of a law that begins at the time `now` and the pose `here`.
     pub(crate) fn begin(here: Pose, goal: &Pose, now: Nanos) -> Self {
         Self { from: here.distance(goal), at: now }
     }
 
-    /// Returns the progress towards another goal, which is further away by this distance.
+    /// Returns the progress towards another goal, which is further away than the previous goal by this distance.
     pub(crate) fn moved(self, further: Meters) -> Self {
         Self { from: Meters(self.from.0 + further.0), ..self }
     }
 
-    /// Updates the progress with the pose of a turn.
+    /// Updates the progress with the robot's pose in a turn.
     pub(crate) fn take(&mut self, here: Pose, goal: &Pose, now: Nanos) {
         let distance = here.distance(goal);
         if self.is_made(distance) {

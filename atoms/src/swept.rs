@@ -1,6 +1,6 @@
-//! Chooses the speed and turn rate that bring a body nearest to a place without a collision on the map (dynamic window
-//! approach). For each pair of a speed and a turn rate, the motion of the body, a disc or a rectangle, is simulated
-//! along the arc.
+//! Chooses the speed and turn rate that bring a body nearest to a place without touching an obstacle on the map
+//! (dynamic window approach). For each pair of a speed and a turn rate, the motion of the body, a disc or a rectangle,
+//! is simulated along the arc.
 
 use core::f64::consts::TAU;
 
@@ -10,13 +10,13 @@ use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twi
 use crate::map::Map;
 use crate::winding::Winding;
 
-/// Maximum number of occupied cells that are considered, from the nearest on.
+/// Maximum number of occupied cells that are considered; these are the nearest ones.
 const POINTS: usize = 96;
 /// Distance beyond the smallest circle around the body, in metres, within which cells are considered.
 const WITHIN: f64 = 0.18;
-/// Turn rates that are tried, in rad/s.
+/// Turn rates to try, in rad/s.
 const RATES: [f64; 7] = [0.0, 0.15, -0.15, 0.35, -0.35, 0.7, -0.7];
-/// Factors by which the given speed is multiplied for the trials.
+/// Factors by which the given speed is multiplied to obtain the speeds to try.
 const SPEEDS: [f64; 4] = [1.0, 0.5, 0.0, -0.5];
 /// Times, in seconds, at which the position of the body is checked.
 const TIMES: [f64; 3] = [0.3, 0.6, 1.0];
@@ -28,24 +28,25 @@ const ROUNDED: f64 = 0.03;
 const ROOM: f64 = 0.12;
 /// Distance, in metres, below which an obstacle costs five times as much.
 const CLOSE: f64 = 0.08;
-/// Cost, in metres, of turning on the spot or driving backwards. Such a movement must bring the robot nearer by more
-/// than this.
+/// Cost, in metres, of turning on the spot or driving backwards. Such a movement must bring the robot nearer to the
+/// place by more than this.
 const STANDING_COSTS: f64 = 0.06;
 /// Cost, in metres, per radian between the body's heading and the direction of the place.
 const OFF_COSTS: f64 = 0.15;
-/// Cost, in metres, per radian between the body's heading and the direction of a place on the way to which the body
-/// cannot turn.
+/// Cost, in metres, per radian between the body's heading and the direction of the place, if the body cannot turn on
+/// the way to the place.
 const OFF_COSTS_STRAIGHT: f64 = 1.0;
 
 /// The place to which a body is to move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Aim {
-    /// Distances of the place ahead of the body and to its left, in metres.
+    /// Distance of the place ahead of the body, in metres; `left` is the distance to the body's left.
     pub(crate) ahead: f64,
     pub(crate) left: f64,
     /// `true` if the body cannot turn on the way to the place, and therefore has to face the place first.
     pub(crate) is_straight: bool,
-    /// Angle by which the robot has turned so far. It decides in which direction the robot turns to face the place.
+    /// Angle by which the robot has turned so far. It determines the direction in which the robot turns to face the
+    /// place.
     pub(crate) winding: Winding,
 }
 
@@ -91,8 +92,8 @@ impl Surroundings {
         self.room(0.0, 0.0, 0.0)
     }
 
-    /// Returns the distance, in metres, between the body, after it has moved to this pose relative to its present one,
-    /// and the nearest occupied cell.
+    /// Returns the distance, in metres, between the body and the nearest occupied cell if the body were at this pose.
+    /// The pose is relative to the body's present pose.
     fn room(&self, x: f64, y: f64, theta: f64) -> f64 {
         let (sin, cos) = libm::sincos(theta);
         let points = self.points.iter().take(self.count);
@@ -105,8 +106,8 @@ impl Surroundings {
         libm::sqrt(square) - self.radius
     }
 
-    /// Returns the input that brings the body nearest to a place, at most at this speed; `None` if every movement would
-    /// touch something. If `is_bold` is `true`, the body also drives where there is little room.
+    /// Returns the input that brings the body nearest to a place; its speed is at most `speed`; `None` if every
+    /// movement would touch something. If `is_bold` is `true`, the body may also drive where there is little room.
     pub(crate) fn towards(&self, aim: &Aim, speed: MetersPerSecond, is_bold: bool) -> Option<Twist> {
         let now = self.now();
         let off = Radians(libm::atan2(aim.left, aim.ahead));
@@ -131,7 +132,7 @@ impl Surroundings {
     }
 
     /// Returns the cost of a movement, in metres; `None` if the body would touch something. `back` is the angle to the
-    /// place by the longer way round; `None` if the robot may take the shorter way.
+    /// place by the longer turn; `None` if the robot may turn the shorter way.
     fn cost(&self, v: f64, omega: f64, now: f64, kept: f64, aim: &Aim, back: Option<f64>) -> Option<f64> {
         let (mut least, mut end, mut before) = (f64::INFINITY, (0.0, 0.0, 0.0), now);
         for t in TIMES {
@@ -171,7 +172,7 @@ mod tests {
     }
 
     /// Returns the input that brings this body nearest to a place 0.4 m ahead and `left` metres to the left, beside
-    /// walls along its way at these distances; `None` if every movement would touch a wall.
+    /// walls that run along its way at these distances; `None` if every movement would touch a wall.
     fn towards(y: &Sensed, left: f64, walls: &[f64]) -> Option<Twist> {
         let mut map = Map::EMPTY;
         for wall in walls {

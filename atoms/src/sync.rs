@@ -10,7 +10,7 @@ use mdle_runtime::capability::StateLink;
 pub struct Sync(&'static str);
 
 impl Sync {
-    /// Returns the quark `sync robot`.
+    /// Creates the quark `sync robot`.
     #[must_use]
     pub const fn new(robot: &'static str) -> Self {
         Self(robot)
@@ -23,14 +23,14 @@ impl<Y: StateLink> Interrupt<Y> for Sync {
     }
 }
 
-/// The interrupt `rendezvous`, which fires once the robot has entered at least as many scopes with a
-/// `rendezvous` with this robot as this robot has with it (docs/src/reference/semantics.md, 2.6). Neither loss
-/// nor delay can undo it, since both numbers only increase.
+/// The interrupt `rendezvous`. It fires once the other robot has entered at least as many scopes with a `rendezvous`
+/// with this robot as this robot has entered with a `rendezvous` with the other (docs/src/reference/semantics.md, 2.6).
+/// Lost or delayed messages cannot undo it, because both counts only increase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rendezvous(&'static str);
 
 impl Rendezvous {
-    /// Returns the quark `rendezvous robot`.
+    /// Creates the quark `rendezvous robot`.
     #[must_use]
     pub const fn new(robot: &'static str) -> Self {
         Self(robot)
@@ -52,7 +52,7 @@ pub struct Past {
 }
 
 impl Past {
-    /// Returns the quark `past robot atom`.
+    /// Creates the quark `past robot atom`.
     #[must_use]
     pub const fn new(robot: &'static str, atom: u64) -> Self {
         Self { robot, atom }
@@ -74,7 +74,7 @@ mod tests {
     use crate::trial::Sensed;
 
     /// Returns the output of a robot that has entered `own` rounds with the robot `ada`. The state of `ada` has this
-    /// age and reports `theirs` rounds.
+    /// age and reports that `ada` has entered `theirs` rounds.
     fn linked(own: u64, age: u64, theirs: u64) -> Sensed {
         let state =
             PeerState { pose: Pose::ORIGIN, velocity: Twist::default(), age: Nanos(age), rounds: theirs, atom: 1 };

@@ -1,5 +1,6 @@
-//! The tangent rule of `goAvoid`, which chooses, among 72 directions, the one that leads best to the goal past the
-//! obstacles that the sonars hear ("to the edge of the obstacle nearest the desired path", paper, section IV-A).
+//! The tangent rule of `goAvoid`. It chooses, among 72 directions, the one that leads best to the goal past the
+//! obstacles that the sonars detect. In the paper (section IV-A), the robot drives "to the edge of the obstacle nearest
+//! the desired path".
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
@@ -11,51 +12,53 @@ use crate::memory::{Memory, PLACES};
 const DIRECTIONS: i32 = 72;
 /// Range, in metres, beyond which pings are ignored.
 const SEEN_WITHIN: f64 = 2.0;
-/// Angles from the axis of the points that represent a ping's arc.
+/// Angles, from the axis of a ping, of the points that represent the arc on which its echo lies.
 const ARC: [Radians; 3] = [Radians::from_degrees(-8.0), Radians(0.0), Radians::from_degrees(8.0)];
 /// Distances, in metres, by which a wall is assumed to continue beyond its last echo.
 const EXTENDS: [f64; 3] = [0.25, 0.5, 0.75];
 /// Minimum distance, in metres, between the oldest and the newest echo of a wall; echoes of an edge are closer
 /// together.
 const APART: f64 = 0.15;
-/// Cosine of the minimum angle between a wall and the axis of the sonar that hears it: 60°.
+/// Cosine of 60°, the minimum angle between a wall and the axis of a sonar that receives its echo.
 const ACROSS: f64 = 0.5;
-/// Maximum number of points: the present echoes with the continuations of walls, and earlier echoes.
+/// Maximum number of points: those of the present echoes, of the assumed continuations of walls, and of earlier echoes.
 const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len()) + PLACES;
-/// Distance between the body and an obstacle, in metres, at which a way costs `CLOSE_COSTS`; a smaller distance
-/// costs more.
+/// Distance between the body and an obstacle, in metres, at which a way has the cost `CLOSE_COSTS`. At a smaller
+/// distance, the cost is higher.
 const MARGIN: f64 = 0.06;
-/// Assumed distance, in metres, between the body and an obstacle that may be nearer than its range. The distance is
-/// small enough for the robot to steer away from the obstacle, and too large to block a gap.
+/// Distance, in metres, that is assumed between the body and an obstacle that may be nearer than its range. With this
+/// distance, the robot steers away from the obstacle, but the obstacle does not block a gap.
 const AT_LEAST_RANGE: f64 = 0.08;
-/// Cost of a way that lacks free length, in radians of detour for the whole look-ahead.
+/// Cost of a way that is not free over the whole look-ahead, in radians of detour. The cost is in proportion to the
+/// missing part of the look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
-/// Cost of a way at the distance `MARGIN` from obstacles, in radians of detour. With 0.6 the robot may leave the middle
-/// of a hallway so far that at the next junction, half-way through a turn, `atIsection` sees the pattern that is to end
-/// the turn.
+/// Cost of a way at the distance `MARGIN` from obstacles, in radians of detour. With a cost of 0.6, the robot might
+/// leave the middle of a hallway so far that, at the next junction, `atIsection` would detect half-way through a turn
+/// the pattern that should end the turn.
 const CLOSE_COSTS: f64 = 0.9;
-/// Cost of a change of direction from turn to turn, in radians of detour for each radian.
+/// Cost of a change of the direction from one turn to the next, in radians of detour for each radian of change.
 const CHANGE_COSTS: f64 = 0.15;
-/// Cost of a change of direction on a detour, in radians of detour for each radian.
+/// Cost of a change of the direction during a detour, in radians of detour for each radian of change.
 const CHANGE_COSTS_ON_A_DETOUR: f64 = 0.6;
-/// Maximum angle of a detour from the goal's direction; with a larger angle, the robot would drive in circles.
+/// Maximum angle between a direction on a detour and the goal's direction; with a larger angle, the robot would drive
+/// in circles.
 const TURNED_MOST: Radians = Radians::from_degrees(215.0);
-/// Difference below which costs count as equal, since it may come from the order of additions.
+/// Difference below which costs are treated as equal, since it may come from the order of additions.
 const ROUNDING: f64 = 1e-9;
-/// Maximum length of free way that counts, in metres.
+/// Maximum length of a free way, in metres; a longer free way is no better.
 const FREE_MOST: f64 = 3.0;
-/// Minimum and maximum distance along the way, in metres, of the points that count as beside the way; behind the robot,
-/// the distance is negative.
+/// Minimum and maximum distance along the way, in metres, of the points that are treated as beside the way; behind the
+/// robot, the distance is negative.
 const BESIDE: (f64, f64) = (-0.05, 0.9);
 
-/// Place of an echo relative to the centre of the body, along the axes of the odometry coordinates.
+/// Position of an echo relative to the centre of the body, along the axes of the odometry coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Point {
     x: f64,
     y: f64,
 }
 
-/// The places of the sonars' last echoes around the robot, and the width of the way that it needs.
+/// The positions of the sonars' last echoes around the robot, and the width that its way must have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Obstacles {
     points: [Point; POINTS],
@@ -87,8 +90,8 @@ pub(crate) struct Wish {
 }
 
 impl Wish {
-    /// Returns the cost of changing the direction since the previous turn. It keeps the robot from alternating between
-    /// two equally good directions.
+    /// Returns the cost of changing the direction since the previous turn. This cost prevents the robot from
+    /// alternating between two equally good directions.
     fn turns(&self, offset: f64) -> f64 {
         let costs = if self.along { CHANGE_COSTS_ON_A_DETOUR } else { CHANGE_COSTS };
         let change = |previous: Radians| Radians(self.goal.0 + offset - previous.0).wrapped().0.abs();
@@ -106,8 +109,8 @@ pub(crate) enum Side {
 }
 
 impl Side {
-    /// Returns an angle from the goal's direction, measured only towards this side: from 0 to 2π on the left, from -2π
-    /// to 0 on the right.
+    /// Converts an angle from the goal's direction to the equal angle that is measured towards this side: from 0 to 2π
+    /// for the left, and from -2π to 0 for the right.
     fn counted(self, offset: f64) -> f64 {
         match self {
             Self::Left if offset < 0.0 => offset + core::f64::consts::TAU,
@@ -118,7 +121,7 @@ impl Side {
 }
 
 impl Obstacles {
-    /// Returns the obstacles that the sonars of `y` heard around the body at `here`.
+    /// Returns the obstacles whose echoes the sonars of `y` have received, around the body at `here`.
     #[inline(never)]
     pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
         let (half_length, half_width) = (y.half_length().0, y.half_width().0);
@@ -151,7 +154,7 @@ impl Obstacles {
         }
     }
 
-    /// Adds the places that `memory` keeps, and returns the previous number of points.
+    /// Adds the positions that `memory` stores, and returns the number of points before that.
     pub(crate) fn remember(&mut self, memory: &Memory, here: Pose, now: Nanos) -> usize {
         let seen = self.count;
         memory.around(here, now).for_each(|(x, y)| self.push(Point { x, y }));
@@ -163,8 +166,8 @@ impl Obstacles {
         self.count = self.count.min(seen);
     }
 
-    /// Returns the distance, in metres and at most 3, that the body with its margin can drive in this direction
-    /// before it reaches a point; negative if a point is already inside the margin.
+    /// Returns the distance, in metres and at most 3, that the body, extended by its margin, can drive in this
+    /// direction before it reaches a point; negative if a point is already inside the margin.
     pub(crate) fn free(&self, direction: Radians) -> Meters {
         self.free_along(Axis::of(direction))
     }
@@ -183,7 +186,7 @@ impl Obstacles {
     /// Returns the distance, in metres, from a place on the way in this direction to the nearest point beside the way;
     /// infinite if there is no such point.
     ///
-    /// A point at which the way ends, after its `free` length, does not count as beside it, except for a wide body.
+    /// A point at which the way ends, after its `free` length, is not treated as beside it, except for a wide body.
     fn beside(&self, axis: Axis, free: Meters) -> f64 {
         let (back, ahead) = (BESIDE.0, BESIDE.1.min(free.0 + self.gains.beyond));
         let place = self.gains.room_at.min(free.0).max(0.0);
@@ -197,8 +200,8 @@ impl Obstacles {
         least
     }
 
-    /// Returns the direction with the lowest cost, as an angle from the goal's direction, measured towards the side on
-    /// which the robot passes the obstacle.
+    /// Returns the direction with the lowest cost, as an angle from the goal's direction, measured towards the side of
+    /// the current detour.
     pub(crate) fn best(&self, wish: &Wish) -> Radians {
         let mut best = (f64::INFINITY, 0, 0.0);
         for number in 0..DIRECTIONS {
@@ -262,8 +265,8 @@ impl Axis {
     }
 }
 
-/// Returns points on the assumed continuation of a wall that the sonar heard in all its pings; `None` if the pings are
-/// not of a wall. The sonars do not hear the continuation itself, since it does not face them.
+/// Returns points on the assumed continuation of a wall that all pings of the sonar show; `None` if the pings do not
+/// show a wall. The continuation itself returns no echo, because it does not face the sonars.
 fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Option<[Point; EXTENDS.len()]> {
     let mut echoes = y.pings(sonar).newest_first().map(|ping| {
         let range = ping.range.filter(|range| range.0 < SEEN_WITHIN)?;
@@ -284,16 +287,16 @@ fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Opti
     Some(EXTENDS.map(|further| Point { x: new.x + further * along / length, y: new.y + further * up / length }))
 }
 
-/// Returns the newest ping of a sonar, or the previous ping if the newest had no echo, and its range. `None` if neither
-/// had an echo, or if the echo is too far away to matter.
+/// Returns the newest ping of a sonar, or the previous ping if the newest had no echo, together with its range. Returns
+/// `None` if neither had an echo, or if the echo is further away than `SEEN_WITHIN`.
 fn heard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(Ping, Meters)> {
     const { assert!(PINGS_KEPT >= 2) };
     let (ping, range) = y.pings(sonar).newest_first().take(2).find_map(|ping| Some((*ping, ping.range?)))?;
     (range.0 < SEEN_WITHIN).then_some((ping, range))
 }
 
-/// Returns points of a ping's arc, at these angles from its axis, relative to `here`. The centre of the arc is the
-/// place of the transducer at the time of the ping.
+/// Returns points of the arc on which a ping's echo lies, at these angles from its axis, relative to `here`. The centre
+/// of the arc is the position of the transducer at the time of the ping.
 fn on_arc<const N: usize>(
     ping: &Ping,
     range: Meters,

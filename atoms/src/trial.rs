@@ -1,4 +1,4 @@
-//! Outputs of a robot, written by hand, for tests of quarks.
+//! Contains outputs of a robot, written by hand, for tests of quarks.
 
 use core::f64::consts::PI;
 
@@ -68,7 +68,7 @@ impl Sensed {
         self.published = self.published.with_links(links);
     }
 
-    /// Moves the robot for one period of an ideal drive.
+    /// Moves the robot as an ideal drive with this input does in one period.
     pub(crate) fn drive(&mut self, input: Twist) {
         let theta = self.pose.theta.0;
         self.pose.x.0 += input.v.0 * PERIOD * libm::cos(theta);
@@ -174,12 +174,12 @@ pub(crate) fn sized(half_length: f64, half_width: f64) -> Sensed {
     Sensed { halves: [half_length, half_width], ..Sensed::default() }
 }
 
-/// Returns the beginning of an atom at time 0, in a frame that equals the odometry coordinates.
+/// Returns the data with which an atom begins at time 0, in a frame that equals the odometry coordinates.
 pub(crate) fn begun() -> Begin {
     framed(0.0)
 }
 
-/// Returns the beginning of an atom at time 0, in a frame turned by this many degrees.
+/// Returns the data with which an atom begins at time 0, in a frame that is turned by this many degrees.
 pub(crate) fn framed(degrees: f64) -> Begin {
     Begin { now: Nanos::ZERO, frame: Frame::default().turned(Radians::from_degrees(degrees)) }
 }

@@ -1,5 +1,5 @@
-//! `turn α`: turns by an angle from the heading at which the atom begins. The law is an addition of this project to the
-//! paper's `rotate` (section IV-A).
+//! `turn α`: turns by an angle from the heading at which the atom begins. The law is not in the paper; this project has
+//! added it beside the paper's `rotate` (section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Begin, Completes, Control, Law, Nanos, Radians, Twist};
@@ -13,7 +13,7 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// Returns the quark `turn angle`. The angle is positive for a counter-clockwise turn, and may exceed a full
+    /// Creates the quark `turn angle`. The angle is positive for a counter-clockwise turn, and may exceed a full
     /// circle.
     #[must_use]
     pub const fn new(angle: Radians) -> Self {
@@ -21,12 +21,12 @@ impl Turn {
     }
 }
 
-/// The law of [`Turn`], which is done when the robot is at rest within 2° of the angle.
+/// The law of [`Turn`], which is done when the robot is at rest and has turned by the angle, within 2°.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turning {
     angle: Radians,
-    /// The angle turned until the heading `last`. It is added up turn by turn, because a heading does not distinguish
-    /// 270° from -90°.
+    /// The angle turned between the beginning of the atom and the heading `last`. It is added up in each turn of the
+    /// machine, because a heading does not distinguish 270° from -90°.
     so_far: Radians,
     /// The heading in the last turn.
     last: Radians,
@@ -40,7 +40,7 @@ impl Turning {
         Radians(self.so_far.0 + Radians(y.pose().theta.0 - self.last.0).wrapped().0)
     }
 
-    /// Returns the angle left to turn.
+    /// Returns the remaining angle.
     fn left<Y: Odometry>(&self, y: &Y) -> Radians {
         Radians(self.angle.0 - self.so_far(y).0)
     }

@@ -1,43 +1,44 @@
-//! Computes the costs of the ways to the goal from all cells of a map. The costs spread as a wave from the goal, or, if
-//! the goal is not on the map, from the cells at the map's edge through which a way leads to it. Cells beside obstacles
-//! cost more.
+//! Computes the cost of the way to the goal from each cell of a map. The costs spread as a wave: from the goal, or, if
+//! the goal is not on the map, from the cells at the map's edge through which a way leads to the goal. Cells beside
+//! obstacles cost more.
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, Pose};
 
 use crate::map::{self, CELLS, Cell, Map};
 
-/// Number of cells along a side of the wave: the side of the map and one more cell at each end.
+/// Number of cells along a side of the wave: the cells along a side of the map, and one more cell at each end.
 pub(crate) const SIDE: usize = CELLS as usize + 2;
 /// Cost of a step to a cell of the same row or column, in centimetres. All distances are whole centimetres.
 const STRAIGHT: u16 = 5;
 /// Cost of a diagonal step, in centimetres.
 const ACROSS: u16 = 7;
-/// Bits of a cell that contain the distance; the other bits contain the class.
+/// Mask of the bits of a cell that contain its distance from the end of the way; the other bits contain its class.
 const DISTANCE: u16 = 0x1fff;
-/// Classes of cells: for each, the room beside the body, in centimetres, below which a cell belongs to the class, and
-/// the factor of the cell's cost. A body does not pass a cell of the first class. From class `AROUND` on, the room is
-/// measured from the smallest circle around the body, in which a rectangle can turn.
+/// Classes of cells. For each class, the first number is the room beside the body, in centimetres, below which a cell
+/// belongs to the class. The second number is the factor of the cost of such a cell. A body does not pass a cell of the
+/// first class. From class `AROUND` on, the room is measured from the smallest circle around the body, inside which a
+/// rectangle can turn.
 const CLASSES: [(i32, u16); 8] = [(2, 0), (4, 10), (6, 6), (8, 5), (2, 4), (10, 4), (16, 2), (i32::MAX, 1)];
 /// First class whose room is measured from the smallest circle around the body.
 const AROUND: usize = 4;
-/// Class from which a body can turn freely; a disc can also turn in lower classes.
+/// First class in which any body can turn freely; a disc can also turn in lower classes.
 const TURNS: usize = 5;
-/// Room, in centimetres, below which the class is looked up in a table.
+/// Room, in centimetres, below which the class of a cell is looked up in a table.
 const SMALL: usize = 64;
 /// Room on a map without obstacles, in centimetres.
 const LARGE: i32 = DISTANCE as i32;
-/// Factor of the cost of a step in a cell that the body does not pass: the step costs more than any distance.
+/// Factor of the cost of a step in a cell that the body does not pass. With it, the step costs more than any distance.
 const NO_WAY: u16 = DISTANCE / STRAIGHT + 1;
 /// Maximum class of an unknown cell.
 const UNKNOWN: usize = 5;
 /// Maximum number of passes over the map, forwards and backwards.
 const PASSES: u32 = 12;
-/// Distance, in metres, by which the end of a way at the map's edge must be nearer to the goal than the reference
-/// distance.
+/// Distance, in metres, by which the end of a way at the map's edge must be nearer to the goal than the distance `from`
+/// of [`Ends`].
 const GAINS: f64 = 0.5;
-/// Distance from the robot, in metres, to just beyond the corners of the map. The remaining distance to the goal is
-/// left out of the costs, so that they fit into a cell.
+/// Distance from the robot, in metres, that lies just beyond the corners of the map. The distance to the goal beyond it
+/// is not included in the costs, so that a cost fits into a cell.
 pub(crate) const EDGE: f64 = 2.4;
 
 /// The ends of ways on a map.
@@ -45,11 +46,11 @@ pub(crate) const EDGE: f64 = 2.4;
 pub(crate) struct Ends {
     /// Position of the goal.
     pub(crate) goal: Pose,
-    /// Distance from the goal at which the robot is near enough. At a goal near a wall, or inside it because odometry
-    /// has drifted, the body has no room.
+    /// Distance from the goal at which the robot is near enough. It is needed because the body has no room at a goal
+    /// that is near a wall, or inside the wall because odometry has drifted.
     pub(crate) near: Meters,
-    /// Reference distance from the goal: a way may leave the map only where it is nearer to the goal by at least
-    /// `GAINS`.
+    /// Reference distance from the goal: a way may leave the map only where the distance from the goal is smaller than
+    /// this by at least `GAINS`.
     pub(crate) from: Meters,
     /// Length, in metres, that is subtracted from all distances from the goal.
     pub(crate) base: f64,
@@ -63,8 +64,8 @@ pub(crate) struct Wave {
 /// A row of cells.
 type Row = [u16; SIDE];
 
-/// Rows of the map, one bit each, in which a forward or backward pass may still lower a distance. A pass lowers a
-/// distance in a row only after a distance in the same row or in the previous row of the pass has changed.
+/// Rows of the map, one bit for each row, in which a forward or a backward pass may still lower a distance. A pass
+/// lowers a distance in a row only after a distance in the same row or in the previous row of the pass has changed.
 struct Rows {
     forth: u64,
     back: u64,
@@ -86,7 +87,7 @@ impl Rows {
     }
 }
 
-/// Returns the index of a cell in a wave, given the cell's numbers from the corner of the map.
+/// Returns the index of a cell in a wave, given the cell's column and row, counted from the corner of the map.
 pub(crate) fn index(x: i32, y: i32) -> usize {
     (y + 1) as usize * SIDE + (x + 1) as usize
 }
@@ -108,9 +109,9 @@ fn step(value: u16) -> u16 {
     }
 }
 
-/// Lowers the distances in a row by steps from the earlier cells of a pass, which are in the same row and in the
-/// previous one. `factor` returns the factor of a step's cost, given the value of the cell. Returns `true` if any
-/// distance has changed.
+/// Lowers the distances in a row, using steps from the cells that the pass has already processed. These are cells of
+/// the same row and of the previous row. `factor` returns the factor of a step's cost, given the value of the cell.
+/// Returns `true` if any distance has changed.
 fn relax<'r>(
     mut row: impl Iterator<Item = &'r mut u16>,
     mut previous: impl Iterator<Item = &'r u16>,
@@ -133,21 +134,22 @@ impl Wave {
     /// The wave before the computation, with the maximum distance in each cell.
     pub(crate) const NONE: Self = Self { rows: [[DISTANCE; SIDE]; SIDE] };
 
-    /// Computes the wave on a map for the body of `y`, from the ends of ways.
+    /// Computes the wave that begins at `ends` on a map, for the body of `y`.
     pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, ends: &Ends, y: &Y) {
         self.measure(map, y);
         let rows = self.seed(map, ends);
         self.spread(rows);
     }
 
-    /// Returns the cost from a cell to the goal, in centimetres, without the cost of the length `base`; `None` if no
-    /// way leads to the goal.
+    /// Returns the cost from a cell to the goal, in centimetres, not including the length `base`; `None` if no way
+    /// leads to the goal.
     pub(crate) fn left(&self, cell: usize) -> Option<i32> {
         let left = self.at(cell) & DISTANCE;
         (left < DISTANCE).then_some(left.into())
     }
 
-    /// Returns the cost, in centimetres, of a way of `cells` cells of the same class as this cell.
+    /// Returns the cost, in centimetres, of a way that is `cells` cells long, all of them of the same class as this
+    /// cell.
     pub(crate) fn cost(&self, cell: usize, cells: f64) -> i32 {
         libm::round(f64::from(STRAIGHT * factor(self.at(cell))) * cells) as i32
     }
@@ -231,7 +233,7 @@ impl Wave {
         rows.back = 0;
     }
 
-    /// Returns the rows from the one before row `y` of the map on.
+    /// Returns all rows from row `y` of the map on, and the row before it.
     fn rows_from(&mut self, y: i32) -> &mut [Row] {
         self.rows.get_mut(y as usize..).unwrap_or_default()
     }

@@ -1,6 +1,6 @@
-//! Finds the shortest way on a map to a place nearer to the goal. A rectangle keeps to its way until another way is
-//! much shorter. It drives straight through places in which it cannot turn: in the last place before them, it turns to
-//! face the first place beyond them.
+//! Finds the shortest way on a map to a place nearer to the goal. A rectangular body keeps to its way until another way
+//! is much shorter. It drives straight through places in which it cannot turn: in the last place before them, it turns
+//! to face the first place beyond them.
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};
@@ -9,27 +9,27 @@ use crate::map::{CELLS, Cell, Map};
 use crate::wave::{EDGE, Ends, SIDE, Wave, index};
 use crate::winding::Winding;
 
-/// Maximum amount, in centimetres, by which the cost of a way may exceed the length of the straight way.
+/// Maximum amount, in centimetres, by which the cost of a way may exceed the length of a straight line to the goal.
 const LONGER: i32 = 600;
-/// Number of cells along the way to the place to which a disc drives.
+/// Distance along the way, in cells, of the place to which a disc drives.
 const AHEAD: u32 = 7;
 /// Distance, in cells, of the place to which a rectangle drives where it can turn.
 const NEAR: f64 = 7.0;
 /// Maximum distance along the way, in cells, over which a rectangle drives straight where it cannot turn.
 const STRAIGHT_MOST: u32 = 24;
-/// Number of cells between the end of a narrow section and the place to which a rectangle drives straight.
+/// Number of cells between the end of a narrow section and the place beyond it to which a rectangle drives straight.
 const BEYOND: u32 = 3;
 /// Maximum distance from a narrow section, in cells, at which a rectangle begins to drive straight.
 const BEFORE: f64 = 1.5;
-/// Maximum amount, in centimetres, by which the cost of the way chosen before may exceed the cost of the best way,
-/// since single pings change the best way.
+/// Maximum amount, in centimetres, by which the cost of the way chosen before may exceed the cost of the best way, so
+/// that single pings, which change the best way, do not make the robot change its way.
 const KEEPS: i32 = 80;
 
 /// The state of the tangent rule in this turn.
 pub(crate) struct Ahead {
     /// Place of the goal.
     pub(crate) goal: Pose,
-    /// Distance from the goal at which the robot is near enough.
+    /// Maximum distance from the goal at which the goal is treated as reached.
     pub(crate) near: Meters,
     /// Reference distance from the goal; a way must end nearer to the goal.
     pub(crate) from: Meters,
@@ -37,7 +37,7 @@ pub(crate) struct Ahead {
     pub(crate) chosen: Radians,
     /// Free length of the way to the goal, and the length that is required; `None` on a detour.
     pub(crate) free: Option<(Meters, Meters)>,
-    /// Speed where the way is free.
+    /// Speed at which the robot drives where the way is free.
     pub(crate) speed: MetersPerSecond,
     /// Angle by which the robot has turned.
     pub(crate) winding: Winding,
@@ -57,8 +57,8 @@ pub(crate) struct Next {
 /// Returns the next place to which the body of `y`, at `here`, has to drive on its way to the goal; `None` if the map
 /// has no way that leads nearer.
 ///
-/// The function is not inlined: the wave is the largest value that a law puts on the stack, and must leave the stack
-/// when the function returns.
+/// The function is not inlined: the wave is the largest value that a law puts on the stack, so it should not remain on
+/// the stack after the function has returned.
 #[inline(never)]
 pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> Option<Next> {
     let (goal, straight) = (&ahead.goal, here.distance(&ahead.goal).0);
@@ -97,15 +97,15 @@ impl Way<'_> {
         (self.sees(cell) && total <= self.wave.left(self.here)? + KEEPS).then_some(cell)
     }
 
-    /// Returns the cell a few steps along the way.
+    /// Returns the cell that is a few steps ahead along the way.
     fn ahead(&self) -> usize {
         (0..AHEAD).fold(self.here, |cell, _| self.wave.next(cell).unwrap_or(cell))
     }
 
     /// Returns the cell to which a rectangular body drives next, and `true` if it must drive there straight. Before a
     /// narrow section this is the last cell in which the body can turn; from there it is a cell a little beyond the
-    /// section, if a free straight line leads to it. `before` is the last result, from which the search continues while
-    /// that result is still usable.
+    /// section, if a free straight line leads to it. `before` is the previous result, from which the search continues
+    /// if it is still usable.
     fn beyond(&self, map: &Map, before: Option<Next>) -> (usize, bool) {
         let before = before.and_then(|before| Some((self.kept(map, &before)?, before.is_straight)));
         let is_tight = |cell: usize| self.wave.is_tight(cell);
@@ -164,8 +164,8 @@ mod tests {
     use super::*;
     use crate::trial::{Sensed, sized};
 
-    /// Returns the state of a tangent rule that has chosen the way straight ahead to a goal, with a reference distance
-    /// of 5 m.
+    /// Returns the state of the tangent rule after it has chosen the way straight ahead to a goal. The reference
+    /// distance is 5 m.
     fn ahead(goal: Pose, before: Option<Next>) -> Ahead {
         Ahead {
             goal,

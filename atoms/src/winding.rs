@@ -1,6 +1,6 @@
-//! The angle by which a robot has turned since an atom began. Wheels that skid make an error in each turn that is about
-//! the same fraction of the turn, so the heading by odometry becomes wrong with every full circle, and turning back
-//! corrects it.
+//! Computes the angle by which a robot has turned since an atom began. Wheels that skid make an error in each turn that
+//! is about the same fraction of the turn, so the error of the heading by odometry increases with every full circle,
+//! and decreases when the robot turns back.
 
 use core::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use mdle_runtime::{Pose, Radians};
 
 use crate::gains::Gains;
 
-/// Angle, in radians, up to which the shorter turn is always chosen.
+/// Angle, in radians, up to which the robot always turns the shorter way.
 const SHORT: f64 = core::f64::consts::FRAC_PI_2;
 
 /// The angle turned, counter-clockwise positive, which may exceed a full circle.
@@ -32,7 +32,7 @@ impl Winding {
     }
 
     /// Returns the angle by which the robot has to turn to a direction at the angle `off`, from -π to π. It is the
-    /// longer way round if `off` is large and the robot has already turned far in the direction of `off`.
+    /// angle of the longer turn if `off` is large and the robot has already turned far in the direction of `off`.
     pub(crate) fn turn_to(self, Radians(off): Radians) -> Radians {
         let total = self.turned + off;
         let winds = off.abs() > SHORT && total.abs() > self.most && total * off > 0.0;

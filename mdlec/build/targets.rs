@@ -1,27 +1,27 @@
-//! Finds the folders of the targets that are part of mdlec, for the build scripts that pack their files.
+//! Finds the folders of the targets that are built into mdlec, for the build scripts that pack these targets' files.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Folder below `targets` that contains the template for `mdlec new-target` instead of a robot.
+/// Folder below `targets` that contains no robot, but the template for `mdlec new-target`.
 const TEMPLATE: &str = "template";
 
-/// Names, in a published package, of the folder of the sources and of the manifests in this folder. `.ci/package`
-/// writes the folder and renames the manifests, because cargo does not publish a subfolder that contains a
-/// `Cargo.toml`.
+/// Name that a published package uses for the folder of the sources, and for the manifests in this folder.
+/// `.ci/package` writes the folder and renames the manifests, because cargo does not publish a subfolder that contains
+/// a `Cargo.toml`.
 const PACKED: &str = "packed";
 const PACKED_MANIFEST: &str = "manifest.toml";
 
-/// Returns the folder of the sources: the packed sources in a published package or, if there are none, the checkout, at
-/// the path `up` relative to the package.
+/// Returns the folder of the sources. In a published package, these are the packed sources; otherwise, it is the
+/// checkout, at the path `up` relative to the package.
 pub(crate) fn checkout(up: &str) -> Result<PathBuf, Box<dyn Error>> {
     let package = PathBuf::from(env::var("CARGO_MANIFEST_DIR")?);
     let packed = package.join(PACKED);
     Ok(if packed.is_dir() { packed } else { package.join(up).canonicalize()? })
 }
 
-/// Returns the manifest of the package in a folder of the sources, if the folder is a package.
+/// Returns the manifest of the package in a folder of the sources; `None` if the folder is not a package.
 pub(crate) fn manifest(folder: &Path) -> Option<PathBuf> {
     ["Cargo.toml", PACKED_MANIFEST].map(|name| folder.join(name)).into_iter().find(|path| path.is_file())
 }

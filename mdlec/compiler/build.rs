@@ -1,4 +1,4 @@
-//! Generates the parser from its grammar, and a table of the alphabets that are part of mdlec.
+//! Generates the parser from its grammar, and a table of the alphabets that are built into mdlec.
 
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
@@ -20,8 +20,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     alphabets()
 }
 
-/// Writes `$OUT_DIR/alphabets.rs`, which `src/builtin.rs` includes: the shared alphabet first, then the alphabets of
-/// the targets.
+/// Writes `$OUT_DIR/alphabets.rs`, which `src/builtin.rs` includes. The file contains the shared alphabet, and then the
+/// alphabets of the targets.
 fn alphabets() -> Result<(), Box<dyn Error>> {
     let root = targets::checkout("../..")?;
     println!("cargo::rerun-if-changed={}", root.join("targets").display());

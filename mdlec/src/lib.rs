@@ -1,5 +1,5 @@
-//! The command line of mdlec, which prints the results of the stages of [`mdle_compiler`], and builds
-//! executables from emitted Rust code.
+//! The command line of mdlec. It prints the results of the stages of [`mdle_compiler`], and builds executables from the
+//! Rust code that the compiler generates.
 
 #[allow(clippy::disallowed_methods, reason = "the command line reads and writes files")]
 pub mod cli;

@@ -11,7 +11,7 @@ use super::{Out, Room, Stage, Verdict};
 /// Minimum and maximum plausible radius of a body, in metres.
 const RADIUS: (f64, f64) = (0.01, 5.0);
 
-/// Checks that a measure, in metres, lies between two limits.
+/// Checks that the dimension `found`, in metres, lies between two limits. `what` names the dimension in messages.
 fn between(what: &str, found: f64, (least, most): (f64, f64)) -> Result<(), String> {
     if (least..=most).contains(&found) {
         return Ok(());

@@ -45,7 +45,7 @@ where
     not_felt(&trial, wall - front, reach)
 }
 
-/// Checks that the robot reports no contact while its body is further than `reach` from the wall.
+/// Checks that the robot reports no contact while the distance between its body and the wall exceeds `reach`.
 fn not_felt<S: Stage>(trial: &Trial<'_, S>, wall: f64, reach: f64) -> Result<(), Verdict>
 where
     Out<S>: Bumpers,

@@ -1,4 +1,4 @@
-//! Checks that an input moves the body with the right signs and units, and that the body stops.
+//! Checks that the motion caused by an input has the right signs and units, and that the body stops.
 
 use std::format;
 
@@ -24,7 +24,7 @@ pub(super) const V: f64 = 0.2;
 pub(super) const OMEGA: f64 = 0.4;
 /// Maximum motion of a body at rest, in metres and radians.
 const STANDS: (f64, f64) = (0.01, 0.02);
-/// Minimum deceleration of a body that is stopped, in m/s² and rad/s².
+/// Minimum deceleration of a body that is commanded to stop, in m/s² and rad/s².
 const BRAKES: (f64, f64) = (0.5, 1.5);
 /// Fraction of the alphabet's speed limits that the body must reach.
 const REACHED: f64 = 0.9;
@@ -37,7 +37,7 @@ pub(super) fn stood(way: &Way, when: &str) -> Result<(), String> {
     Err(format!("{when} the body went {:.3} m and turned by {:.1} degrees", way.far(), way.turn.to_degrees()))
 }
 
-/// Checks that the body has moved along the arc of a body that drives at the speed `v` and the turn rate `omega` for
+/// Checks that the body has moved along the arc that results from the speed `v`, the turn rate `omega` and the duration
 /// `seconds`.
 fn went(way: &Way, v: f64, omega: f64, seconds: f64) -> Result<(), String> {
     let arc = Way::between(Pose::ORIGIN, Pose::ORIGIN.moved(Meters(v * seconds), Radians(omega * seconds)));
@@ -51,7 +51,7 @@ fn went(way: &Way, v: f64, omega: f64, seconds: f64) -> Result<(), String> {
     measured("went to its left by", "m", way.left, arc.left, METRES + PART * arc.far())
 }
 
-/// Drives, and checks the motion of the body once it has the commanded speed.
+/// Commands a speed and a turn rate, and checks the motion of the body as soon as the body has reached them.
 fn drives<S: Stage>(stage: &mut S, v: f64, omega: f64) -> Result<(), Verdict> {
     let mut trial = Trial::of(stage, &Room::open())?;
     trial.drive(v, omega, SETTLES)?;

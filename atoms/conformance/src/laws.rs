@@ -1,4 +1,4 @@
-//! Checks the paper's laws on this robot: `go`, `stop`, `rotate`, `turn`, `align` (section IV-A).
+//! Checks laws of the paper on this robot: `go`, `stop`, `rotate`, `turn` and `align` (section IV-A).
 
 use std::format;
 
@@ -21,7 +21,8 @@ const SQUARE: f64 = 8.0;
 const TURNS: f64 = 25.0;
 /// The wall beside which `align` runs: its distance from the body, and half its length, both in metres.
 const WALL: (f64, f64) = (0.5, 1.8);
-/// Angle from square at which the robot begins to align, in degrees.
+/// Angle, in degrees, between the heading at which the robot begins to align and the heading that is square to the
+/// wall.
 const ASKEW: f64 = 12.0;
 
 pub(super) fn go<S: Stage>(stage: &mut S) -> Result<(), Verdict> {

@@ -18,17 +18,17 @@ const FACTORS: [(f64, &str); 10] = [
     (0.5, "a radius for a diameter"),
 ];
 
-/// Fraction of the expected number below which a measured number counts as zero.
+/// Fraction of the expected number below which a measured number is treated as zero.
 const NOTHING: f64 = 0.01;
 
 /// A measured number, the expected number, and the texts for the message about a difference.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measured<'a> {
-    /// Text up to the number: the action, and the measured quantity.
+    /// Text of the message before the number: the action, and the measured quantity.
     pub(super) what: &'a str,
     /// Unit of the quantity.
     pub(super) unit: &'a str,
-    /// Name of the quantity to blame for a wrong sign or scale, such as "the input".
+    /// Name of the quantity that causes a wrong sign or scale, such as "the input".
     pub(super) whose: &'a str,
     pub(super) found: f64,
     pub(super) wanted: f64,

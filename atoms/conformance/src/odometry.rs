@@ -19,8 +19,8 @@ fn counted(what: &str, unit: &str, found: f64, wanted: f64, within: f64) -> Resu
     Measured { what, unit, whose: "odometry", found, wanted, within }.check()
 }
 
-/// Checks that the path `reported` by odometry is the path that the body truly `went`. `did` names the motion in
-/// errors.
+/// Checks that the path `reported` by odometry equals the path `went` of the body itself. `did` names the motion in
+/// messages.
 fn check_way(did: &str, reported: &Way, went: &Way) -> Result<(), String> {
     let says = |what: &str| format!("{did}, and by odometry it {what}");
     let (metres, radians) = (METRES + PART * went.far(), RADIANS + PART * went.turn.abs());

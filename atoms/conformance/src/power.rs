@@ -39,7 +39,7 @@ where
     Ok(supply)
 }
 
-/// Checks that the interrupts `lowBattery` and `charger` and the signal `battery` agree with the output.
+/// Checks that the interrupts `lowBattery` and `charger` and the signal `battery` agree with the output `y`.
 fn agree<S: Stage>(y: &Out<S>, supply: ReportedSupply) -> Result<(), Verdict> {
     for (name, wanted) in [("lowBattery", supply.is_low), ("charger", supply.is_plugged)] {
         let interrupt = S::Alphabet::interrupt(name, &[]).ok_or(Verdict::NotOffered)?;

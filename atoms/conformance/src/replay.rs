@@ -1,4 +1,5 @@
-//! Checks that the robot's output contains the given paths, and that the law `path` replays one (section IV-A).
+//! Checks that the robot's output contains the paths that the robot was given, and that the law `path` replays one of
+//! them (section IV-A).
 
 use std::format;
 

@@ -1,4 +1,4 @@
-//! The results of the checks, for the author of a robot.
+//! Reports the results of the checks to the author of a robot.
 
 use std::format;
 
@@ -14,7 +14,7 @@ pub enum Verdict {
     Holds,
     /// The alphabet has no such quark or signal, so no plan can use it.
     NotOffered,
-    /// A defect; contains a message for the author.
+    /// The robot has a defect; contains a message for its author.
     Broken(String),
 }
 
@@ -47,7 +47,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Returns a report of the results `checked` of the capabilities `asked`, for a robot whose alphabet claims the
+    /// Creates a report of the results `checked` of the capabilities `asked`, for a robot whose alphabet claims the
     /// capabilities `claimed`.
     pub(super) fn new(checked: Vec<Checked>, asked: &[&str], claimed: &[&'static str]) -> Self {
         let method = |capability: &str| format!(".{}()", capability.trim_end_matches("[16]"));

@@ -9,20 +9,21 @@ use super::room::AT;
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// Time, in seconds, until every sonar has pinged three times, also on a robot whose sonars fire in turn.
+/// Time, in seconds, within which every sonar pings three times, even on a robot whose sonars fire in turn.
 pub(super) const HEARD: f64 = 3.2;
 /// Tolerance of a range, in metres. A sonar may have a resolution of an inch, and need not be mounted exactly on the
 /// ring.
 const RANGE: f64 = 0.05;
 /// Distances from the centre, in metres, of the walls in front of the sonars, all different. The walls of sonars with
-/// even numbers are nearer than their neighbours, since some robots listen to two sonars there. The sequence differs
-/// from each of its rotations and reversals.
+/// even numbers are nearer than the walls next to them, because on some robots such a sonar measures with two
+/// transducers. The sequence differs from each of its rotations and reversals, so that the checks detect sonars in a
+/// wrong order.
 const WALLS: [f64; SONARS] =
     [1.08, 1.71, 0.75, 2.37, 1.41, 1.93, 0.86, 1.60, 1.19, 2.15, 0.97, 2.26, 1.52, 1.82, 1.30, 2.04];
-/// Half-widths of the walls, for sonars with even and with odd numbers, per metre of distance. The neighbouring sonars
-/// do not hear walls that are this narrow.
+/// Half-widths of the walls, for sonars with even and with odd numbers, per metre of distance. Walls that are this
+/// narrow cause no echoes at the neighbouring sonars.
 const HALF: [f64; 2] = [0.05, 0.08];
-/// Maximum age of a ping, in seconds: a full ring takes a second.
+/// Maximum age of a ping, in seconds: a full round of all sonars takes one second.
 const OLD: f64 = 2.0;
 /// Tolerance of the pose at which a ping was made, in metres and radians.
 const THERE: (f64, f64) = (0.06, 0.1);
@@ -32,8 +33,8 @@ fn sonars() -> impl Iterator<Item = SonarId> {
     (0..SONARS as u8).map(SonarId::new)
 }
 
-/// Returns the last echo of a sonar, as the distance from the centre of the body in metres; `None` if it heard
-/// no echo.
+/// Returns the last echo of a sonar, as the distance from the centre of the body in metres; `None` if there was no
+/// echo.
 fn heard<S: Stage>(trial: &Trial<'_, S>, sonar: SonarId) -> Result<Option<f64>, String>
 where
     Out<S>: SonarRing,

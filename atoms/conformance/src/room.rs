@@ -1,4 +1,4 @@
-//! The rooms in which robots are tested: straight walls around the place where the robot begins.
+//! The rooms in which robots are tested: straight walls around the position at which the robot begins.
 
 use std::string::{String, ToString};
 
@@ -16,7 +16,7 @@ pub(super) const AT: Pose = Pose { x: Meters(1.0), y: Meters(-0.5), theta: Radia
 /// A straight wall without thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wall {
-    /// One end of the wall, by `x` and `y`; the heading is ignored.
+    /// One end of the wall; the heading is ignored.
     pub from: Pose,
     /// The other end of the wall; the heading is ignored.
     pub to: Pose,
@@ -37,8 +37,9 @@ impl Room {
         sides.into_iter().fold(Self { walls: Vec::new() }, |room, side| room.across(side, FAR, FAR))
     }
 
-    /// Places a wall that is square to the direction `degrees` counter-clockwise from the robot's first
-    /// heading, `distance` metres from the robot's centre, and `half` metres long to either side.
+    /// Adds a wall that is perpendicular to a direction, `degrees` counter-clockwise from the robot's first heading.
+    /// The wall is `distance` metres from the robot's centre, and extends `half` metres to either side of the
+    /// direction.
     pub(super) fn across(mut self, degrees: f64, distance: f64, half: f64) -> Self {
         let bearing = AT.theta.0 + Radians::from_degrees(degrees).0;
         let foot = AT.towards(Radians(bearing), Meters(distance));

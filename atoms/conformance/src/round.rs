@@ -8,13 +8,13 @@ use mdle_runtime::{Argument, Meters, MetersPerSecond, Pose, Radians};
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// Maximum distance from the goal at the end, in metres: 0.12 m that the law tolerates, and the error of odometry.
+/// Maximum distance from the goal at the end, in metres: the tolerance of the law, 0.12 m, and the error of odometry.
 const ARRIVED: f64 = 0.2;
 /// Distance of the goal from the start, in metres.
 const RANGE: f64 = 1.0;
 /// Speed to drive at, in m/s.
 const SPEED: f64 = 0.2;
-/// Maximum distance, in metres, between a wall and a body that counts as touching it.
+/// Maximum distance, in metres, between a wall and a body that is treated as touching it.
 const TOUCHES: f64 = 0.002;
 
 fn arguments(degrees: f64, range: f64) -> [Argument<'static>; 3] {

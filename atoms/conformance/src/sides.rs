@@ -1,4 +1,4 @@
-//! Checks that `atIsection` assigns each of its four bits to the right side.
+//! Checks that `atIsection` assigns each of its four bits to the correct side of the robot.
 
 use std::format;
 
@@ -26,7 +26,7 @@ where
     Ok(())
 }
 
-/// Returns the pattern in which only the side with this number has a wall.
+/// Returns the pattern that has a wall only on the side with this number.
 fn side(number: usize) -> [bool; 4] {
     core::array::from_fn(|other| other == number)
 }
@@ -36,7 +36,7 @@ fn word(bits: [bool; 4]) -> String {
     bits.iter().map(|bit| if *bit { '1' } else { '0' }).collect()
 }
 
-/// Checks that only the pattern of these walls fires, out of the 16 patterns of `atIsection`.
+/// Checks that, among the 16 patterns of `atIsection`, only the pattern of these walls fires.
 fn tells<S: Stage>(stage: &mut S, walls: [bool; 4]) -> Result<(), Verdict>
 where
     Out<S>: SonarRing + DiffDrive,

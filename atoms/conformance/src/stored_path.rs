@@ -2,7 +2,8 @@
 
 use mdle_runtime::{MetersPerSecond, Nanos, PathStore, Radians, Setpoint, StoredPath};
 
-/// The path that every robot is given: 1 s ahead, a quarter of a circle to the left in 2 s, and 1 s ahead.
+/// The path that every robot is given: 1 s straight ahead, a quarter of a circle to the left in 2 s, and 1 s straight
+/// ahead.
 pub(super) static STORED: PathStore = PathStore::new(&[StoredPath { name: NAME, setpoints: &BEND }]);
 /// Name of the path.
 pub(super) const NAME: &str = "bend.csv";

@@ -1,4 +1,4 @@
-//! Runs trials of a robot in a room: makes turns and measures the motion of the body.
+//! Runs a robot in a room for a trial: makes exchanges, and measures the motion of the body.
 
 use std::format;
 
@@ -19,7 +19,7 @@ pub(super) struct Trial<'s, S: Stage> {
     pub(super) robot: S::Robot,
     /// The robot's last output.
     pub(super) y: Out<S>,
-    /// Frame of a plan that began with the robot's first output.
+    /// Frame of a plan that begins with the robot's first output.
     frame: Frame,
     /// Number of exchanges so far.
     exchanges: u64,
@@ -109,9 +109,9 @@ impl<'s, S: Stage> Trial<'s, S> {
         Way::between(from, self.truth())
     }
 
-    /// Runs the law `name` with these arguments until it is done, in the frame of a plan that began with the first
-    /// exchange, and calls `each` in every turn. Returns the number of seconds that the law took; `None` if it was not
-    /// done within `most` seconds.
+    /// Runs the law `name` with these arguments until it is done, and calls `each` in every turn. The frame is that of
+    /// a plan that begins with the first exchange. Returns the number of seconds that the law took; `None` if it was
+    /// not done within `most` seconds.
     pub(super) fn run(
         &mut self,
         name: &str,
@@ -142,7 +142,7 @@ impl<'s, S: Stage> Trial<'s, S> {
     }
 }
 
-/// Returns the number of periods in about this many seconds; at least one.
+/// Returns the approximate number of periods in this many seconds; at least 1.
 fn periods<S: Stage>(seconds: f64) -> u32 {
     libm::round(seconds / S::PERIOD.seconds().max(1e-3)).max(1.0) as u32
 }

@@ -1,5 +1,5 @@
-//! The breakpoints of a session. A breakpoint is at a place in the plan, at the entry of an atom or of a named scope,
-//! or at a time.
+//! The breakpoints of a session. A breakpoint stops the run at a place in the plan, at the entry of an atom or of a
+//! named scope, or at a time.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -36,7 +36,7 @@ enum NamedBreakpoint {
 }
 
 impl Breakpoints {
-    /// Returns the breakpoints of a plan; none is set.
+    /// Creates the breakpoints of a plan; none is set.
     pub(crate) fn new(loaded: &LaunchedPlan) -> Self {
         Self { places: places(loaded), lines: BTreeMap::new(), names: Vec::new(), last: 0 }
     }
@@ -46,8 +46,8 @@ impl Breakpoints {
         &self.places
     }
 
-    /// Replaces the breakpoints in a file by breakpoints at the given lines and columns, which count from 0. Returns
-    /// the number of each breakpoint, with its place or the reason why it has none.
+    /// Replaces the breakpoints in a file by breakpoints at the given lines and columns, which are counted from 0.
+    /// Returns the number of each breakpoint, with its place or the reason why it has none.
     pub(crate) fn set(
         &mut self,
         loaded: &LaunchedPlan,
@@ -112,7 +112,7 @@ impl Breakpoints {
     }
 }
 
-/// Parses the text of a breakpoint that has no place in a file: a name, or a time with its unit.
+/// Parses the text of a breakpoint that has no place in a file. The text is a name, or a time with its unit.
 fn name(plan: &Plan, text: &str) -> Result<NamedBreakpoint, String> {
     if text.starts_with(|c: char| c.is_ascii_digit()) {
         return time(text)

@@ -27,7 +27,7 @@ pub(crate) struct Client<'o> {
     /// Requests that arrived during a run, in order of arrival.
     waiting: VecDeque<ClientRequest>,
     output: &'o mut dyn Write,
-    /// Number of the last sent message.
+    /// Number of the last message that was sent.
     seq: i64,
 }
 
@@ -60,7 +60,7 @@ impl<'o> Client<'o> {
         }
     }
 
-    /// Returns `true` if the client has sent a request that interrupts the run.
+    /// Returns `true` if the client has sent a request that has to interrupt the run.
     pub(crate) fn interrupts(&mut self) -> Result<bool, ServeError> {
         while let Ok(message) = self.received.try_recv() {
             self.waiting.extend(request(message?)?);
@@ -103,7 +103,8 @@ impl<'o> Client<'o> {
     }
 }
 
-/// Reads a request. Returns `None` for a response, which is ignored because the debugger sends no requests.
+/// Converts a message to a request. Returns `None` for a response, which is ignored because the debugger sends no
+/// requests.
 fn request(mut message: Value) -> Result<Option<ClientRequest>, ServeError> {
     match message.get("type").and_then(Value::as_str) {
         Some("request") => {}

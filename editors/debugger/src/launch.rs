@@ -35,9 +35,9 @@ pub(crate) struct LaunchedPlan {
     pub(crate) compiled: Compiled,
     input: Input,
     script: Script,
-    /// Lines of each file that was read.
+    /// Positions of the lines of each file that was read.
     lines: BTreeMap<SourceId, LineStarts>,
-    /// Texts of the `after` conditions, by the fact that each condition tests.
+    /// Texts of the `after` conditions. The key of each text is the fact that the condition tests.
     facts: BTreeMap<(RecordId, u32), String>,
 }
 
@@ -97,7 +97,7 @@ impl LaunchedPlan {
         self.input.sources.text(source)
     }
 
-    /// Returns the text of a span.
+    /// Returns the text of the part of a file that `span` describes.
     pub(crate) fn slice(&self, span: Span) -> &str {
         self.input.sources.slice(span)
     }
@@ -116,7 +116,8 @@ impl LaunchedPlan {
         self.lines.keys().copied().find(is_there)
     }
 
-    /// Returns the file of a span, and the line and column of its start, both from 0; columns are in UTF-16 units.
+    /// Returns the file of a span, and the line and column of its start, both counted from 0. The column is counted in
+    /// UTF-16 units.
     pub(crate) fn place(&self, span: Span) -> (SourceId, u32, u32) {
         let (source, range) = self.input.sources.range(span);
         let at = self.lines.get(&source).map(|lines| lines.position(self.text(source), range.start));
@@ -129,7 +130,7 @@ impl LaunchedPlan {
     }
 }
 
-/// Returns the texts of a plan's `after` conditions, by the fact that each condition tests.
+/// Returns the texts of a plan's `after` conditions. The key of each text is the fact that the condition tests.
 fn facts(compiled: &Compiled) -> BTreeMap<(RecordId, u32), String> {
     let mut facts = BTreeMap::new();
     for interrupt in compiled.plan.parts().filter_map(mdle_compiler::plan::PlanPart::interrupt) {
@@ -148,7 +149,7 @@ fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
     shown.chain(judged(found, false).err()).collect::<Vec<_>>().join("\n")
 }
 
-/// Returns the error message for a file that cannot be read, or the diagnostics of a file with errors.
+/// Converts an error to text: a message if the file cannot be read, or the diagnostics if the file contains errors.
 fn words(error: InputError) -> String {
     let own = error.to_string();
     let found = error.faulty_file().map(|file| rendered(&file.sources, &file.diagnostics));

@@ -21,7 +21,7 @@ use std::io::{self, BufReader, Read, Write};
 
 use client::Client;
 
-/// Reason why the debugger ends before the client requested it.
+/// Reason why the debugger ends although the client has not requested it.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
     /// The client violated the protocol.

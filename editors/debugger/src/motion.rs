@@ -8,10 +8,10 @@ use crate::breakpoints::Id;
 use crate::run::StepKind;
 use crate::session::DebugSession;
 
-/// Number of steps after which the run checks for a request that interrupts it.
+/// Number of steps of a run between two checks for a request that interrupts it.
 const LOOK: u64 = 4_096;
 
-/// A motion that the client requests.
+/// A motion of the run that the client requests.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum RequestedMotion {
     /// Forward to the next breakpoint or to the end.
@@ -20,7 +20,7 @@ pub(crate) enum RequestedMotion {
     Turn,
     /// Forward to the next transition.
     Transition,
-    /// Forward until the innermost scope of the atom has ended.
+    /// Forward to the end of the innermost scope that encloses the atom.
     Out,
     /// Back to the end of the previous turn.
     TurnBack,
@@ -59,7 +59,7 @@ impl DebugSession<'_, '_, '_> {
         }
     }
 
-    /// Performs a motion, and reports where the run has stopped.
+    /// Performs a motion, and reports the position at which the run has stopped.
     pub(crate) fn go(&mut self, motion: RequestedMotion) -> Result<(), ServeError> {
         self.lists.clear();
         match motion {

@@ -9,9 +9,9 @@ use crate::launch::LaunchedPlan;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct StopPlace {
     source: SourceId,
-    /// Line of the start, from 0.
+    /// Line of the start, counted from 0.
     pub(crate) line: u32,
-    /// Column of the start, from 0.
+    /// Column of the start, counted from 0.
     pub(crate) column: u32,
     /// `true` for an operand of a condition, `false` for a scope, a loop or an atom.
     pub(crate) is_operand: bool,
@@ -39,9 +39,10 @@ pub(crate) fn places(loaded: &LaunchedPlan) -> Vec<StopPlace> {
     places
 }
 
-/// Returns the place at which a breakpoint in the given line stops the run. With a column, this is the operand at the
-/// column, otherwise the next place in the line, otherwise the last place in the line. Without a column, this is the
-/// element that begins in the line. If there is no such place, it is the next place in the file.
+/// Returns the place at which a breakpoint in the given line stops the run. If a column is given, this is the operand
+/// at the column. If there is no operand, it is the next place in the line, or else the last place in the line. If no
+/// column is given, this is the element that begins in the line. If none of these places exists, it is the next place
+/// in the file.
 pub(crate) fn meant(places: &[StopPlace], source: SourceId, line: u32, column: Option<u32>) -> Option<StopPlace> {
     let from = places.partition_point(|place| (place.source, place.line) < (source, line));
     let to = places.partition_point(|place| (place.source, place.line) <= (source, line));
@@ -69,8 +70,8 @@ pub(crate) fn between(
 }
 
 impl StopPlace {
-    /// Returns the column after the end of the place, which must end in the line in which it begins. Operands contain
-    /// only characters of one UTF-16 unit.
+    /// Returns the column after the end of the place, which must end in the line in which it begins. Each character of
+    /// an operand is one UTF-16 unit.
     fn end_column(&self) -> u32 {
         self.column.saturating_add(self.span.end.saturating_sub(self.span.start))
     }

@@ -1,4 +1,5 @@
-//! Answers the requests that a client sends while the run is stopped. An answer depends only on the session.
+//! Answers the requests that a client sends while the run is stopped. An answer depends only on the state of the
+//! session.
 
 use std::path::PathBuf;
 
@@ -80,7 +81,7 @@ struct OfReference {
 /// Answers a request.
 ///
 /// # Errors
-/// Fails with a sentence for the user.
+/// Returns a sentence for the user if the request cannot be answered.
 pub(crate) fn answer(
     session: &mut DebugSession<'_, '_, '_>,
     command: &str,
@@ -169,7 +170,7 @@ fn stack_trace(session: &DebugSession<'_, '_, '_>, asked: &StackTrace) -> Value 
     json!({ "stackFrames": shown.collect::<Vec<_>>(), "totalFrames": total })
 }
 
-/// Returns a frame as a protocol object, with its place in a file.
+/// Converts a frame to an object of the protocol, including its place in a file.
 fn shown(session: &DebugSession<'_, '_, '_>, number: usize, frame: &StackFrame) -> Value {
     let loaded = session.loaded;
     let (source, line, column) = loaded.place(frame.span);
@@ -187,8 +188,8 @@ fn shown(session: &DebugSession<'_, '_, '_>, number: usize, frame: &StackFrame) 
     })
 }
 
-/// Returns the frame with this number; without a number, the frame of the current atom. Returns `None` once the plan
-/// has ended.
+/// Returns the frame with this number or, if there is no number, the frame of the current atom. Returns `None` if the
+/// plan has ended.
 fn frame(session: &DebugSession<'_, '_, '_>, number: Option<usize>) -> Result<Option<StackFrame>, String> {
     let frames = frames(&session.run, &session.loaded.compiled.plan);
     let index = number.unwrap_or(1).checked_sub(1).filter(|index| *index < frames.len().max(1));

@@ -5,7 +5,7 @@ use mdle_compiler::diagnostic::Span;
 use mdle_compiler::plan::Plan;
 use mdle_compiler::trace::{OpenPart, Reports, ScriptedInput, TreeStep, TreeWalk};
 
-/// Maximum number of state copies. When it is reached, every second copy is dropped.
+/// Maximum number of copies of the state. When it is reached, every second copy is deleted.
 const MOST_COPIES: usize = 64;
 
 /// A position in a run.
@@ -13,9 +13,9 @@ const MOST_COPIES: usize = 64;
 pub(crate) struct RunPosition {
     /// Number of steps from the start of the run.
     pub(crate) steps: u64,
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) turn: usize,
-    /// Number of transitions in the turn so far.
+    /// Number of transitions that the turn has made so far.
     made: usize,
     /// Input of the turn; `None` until the turn has ended.
     pub(crate) input: Option<TurnInput>,
@@ -37,8 +37,8 @@ pub(crate) enum TurnInput {
 pub(crate) enum StepKind {
     /// The next turn has begun, at a later time.
     Turn,
-    /// A scope has ended. `ended` is the number of open elements that enclosed the scope; `kept` is the number of open
-    /// elements that are still open.
+    /// A scope has ended. `ended` is the number of open elements that enclosed this scope. `kept` is the number of
+    /// elements that were open before the step and remain open.
     Transition { ended: usize, kept: usize },
     /// The turn has ended.
     End,
@@ -80,17 +80,17 @@ impl<'p> DebugRun<'p> {
         self.turns.get(self.at.turn.checked_sub(1)?)
     }
 
-    /// Returns the open elements, from the plan to the current atom; none once the plan has ended.
+    /// Returns the open elements, from the plan to the current atom; the list is empty if the plan has ended.
     pub(crate) fn open(&self) -> impl DoubleEndedIterator<Item = OpenPart<'_, 'p>> + ExactSizeIterator {
         self.tree.open()
     }
 
-    /// Returns the places of the operands that end a scope in the next step because they fire.
+    /// Returns the places of the operands that fire and thereby end a scope in the next step.
     pub(crate) fn firing(&self) -> Vec<Span> {
         if self.at.input.is_some() { Vec::new() } else { self.tree.firing(self.reports()) }
     }
 
-    /// Returns `true` once the plan has ended.
+    /// Returns `true` if the plan has ended.
     pub(crate) fn is_over(&self) -> bool {
         self.open().len() == 0
     }
@@ -193,8 +193,8 @@ mod tests {
       ExecPlan inf { (Atom (RISING bumper OR wait 3) (go 20 0)) (Atom (bumper AND wait 1) (go 10 0))^3 }
     }";
 
-    /// Calls `test` with a run of a plan on a script of `turns` turns. In the script, bumper fires in every third and
-    /// in every seventh turn.
+    /// Calls `test` with a run of a plan on a script of `turns` turns. In the script, the interrupt `bumper` fires in
+    /// every third and in every seventh turn.
     fn with_run(turns: usize, test: impl FnOnce(DebugRun<'_>)) {
         let target = mdle_files::target(Some("sim")).unwrap();
         let (compiled, _) = compile(SourceId(0), PLAN, &target.alphabet, None);

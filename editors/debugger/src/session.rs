@@ -6,7 +6,7 @@ use crate::launch::LaunchedPlan;
 use crate::run::DebugRun;
 use crate::variables::Lists;
 
-/// Numbers of the first line and the first column in the client's messages, 0 or 1.
+/// Numbers that the first line and the first column have in the client's messages: 0 or 1.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Base {
     pub(crate) line: u32,

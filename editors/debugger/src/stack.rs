@@ -12,14 +12,14 @@ pub(crate) struct StackFrame {
     pub(crate) name: String,
     /// Place of the atom or of the scope's definition.
     pub(crate) span: Span,
-    /// Index of the frame in the run's list of open elements.
+    /// Index of the frame's element in the run's list of open elements.
     pub(crate) open: usize,
     /// Loops that directly enclose the element, from the outermost to the innermost, as indices into the run's list of
     /// open elements.
     pub(crate) loops: Vec<usize>,
 }
 
-/// Returns the frames from the current atom to the plan; none once the plan has ended.
+/// Returns the frames from the current atom to the plan; the list is empty if the plan has ended.
 pub(crate) fn frames(run: &DebugRun<'_>, plan: &Plan) -> Vec<StackFrame> {
     let (mut frames, mut loops, mut passes) = (Vec::new(), Vec::new(), String::new());
     for (open, element) in run.open().enumerate() {

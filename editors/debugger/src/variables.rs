@@ -7,8 +7,8 @@ use crate::run::{DebugRun, TurnInput};
 use crate::stack::StackFrame;
 use crate::why::{Reason, reason};
 
-/// Lists of variables that the client can request while the run is stopped. The client refers to a list by its index,
-/// from 1.
+/// Stores the lists of variables that the client can request while the run is stopped. The client refers to a list by
+/// its index, counted from 1.
 #[derive(Debug, Default)]
 pub(crate) struct Lists(Vec<Vec<Value>>);
 
@@ -35,7 +35,7 @@ impl Lists {
         json!({ "name": reason.text, "value": reason.value(), "variablesReference": reference })
     }
 
-    /// Returns the groups of variables for a frame; once the plan has ended, only the group for the turn.
+    /// Returns the groups of variables for a frame; if the plan has ended, returns only the group for the turn.
     pub(crate) fn scopes(&mut self, loaded: &LaunchedPlan, run: &DebugRun<'_>, frame: Option<&StackFrame>) -> Value {
         let mut lists = Vec::new();
         if let Some(frame) = frame {
@@ -75,7 +75,8 @@ fn meters(nanometers: u64) -> String {
     format!("{} m", nanometers as f64 / 1e9)
 }
 
-/// Returns the memory of a frame: timer, distance driven, passes of loops, memories of RISING, and record of `after`.
+/// Returns the memory of a frame: its timer, the distance driven, the passes of its loops, the memory of each RISING,
+/// and its record for `after`.
 fn kept(loaded: &LaunchedPlan, run: &DebugRun<'_>, frame: &StackFrame) -> Vec<Value> {
     let reports = run.reports();
     let opened: Vec<_> = run.open().collect();

@@ -22,9 +22,10 @@ pub(crate) struct Reason {
     pub(crate) operands: Vec<Reason>,
 }
 
-/// Explains the value of the condition in `expression`, which can be the frame's whole condition or a part of it,
-/// written as in the file or as conditions are printed. It can also be the first word of an operand; the name of a
-/// signal selects all comparisons of this signal. Returns `None` if the frame's condition has no such part.
+/// Explains the value of the condition that `expression` selects. `expression` can be the frame's whole condition or a
+/// part of it, written as in the file or as conditions are printed. It can also be the first word of an operand: for
+/// example, the name of a signal selects all comparisons of this signal. Returns `None` if the frame's condition has no
+/// such part.
 pub(crate) fn why(
     loaded: &LaunchedPlan,
     run: &DebugRun<'_>,
@@ -52,8 +53,8 @@ pub(crate) fn why(
     if comparisons.is_empty() { named.into_iter().next().map(|first| vec![first]) } else { Some(comparisons) }
 }
 
-/// Returns a sentence about `reasons`: the value of a single condition. For the comparisons of a number, which is
-/// neither true nor false itself, returns the text and the value of each comparison.
+/// Returns a sentence about `reasons`. For a single condition, it contains the value. For the comparisons of a number,
+/// which itself is neither true nor false, it contains the text and the value of each comparison.
 pub(crate) fn sentence(reasons: &[Reason], expression: &str) -> String {
     let expression = plain(expression);
     match reasons {
@@ -156,7 +157,7 @@ impl Reason {
         if self.detail.is_empty() { value.to_owned() } else { format!("{value}: {}", self.detail) }
     }
 
-    /// Returns the value, followed by the values of the operands that determine it.
+    /// Returns the value as text, followed by the values of the operands that determine it.
     fn sentence(&self) -> String {
         let mut sentence = self.value();
         let operands: Vec<String> =

@@ -29,7 +29,7 @@ pub(crate) struct RequestedDocument<'d> {
 }
 
 impl RequestedDocument<'_> {
-    /// Calls `feature` with the document.
+    /// Calls `feature` with a view of the document, and returns its result.
     pub(crate) fn view<T>(&mut self, feature: impl FnOnce(&View<'_>) -> T) -> T {
         self.plan.view(feature)
     }
@@ -56,7 +56,7 @@ impl RequestedDocument<'_> {
 }
 
 impl Plan {
-    /// Calls `feature` with the plan.
+    /// Calls `feature` with a view of the plan, and returns its result.
     pub(crate) fn view<T>(&mut self, feature: impl FnOnce(&View<'_>) -> T) -> T {
         view(self.input.source, &mut self.input, |input| &input.sources, &self.target.alphabet, feature)
     }

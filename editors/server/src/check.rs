@@ -17,11 +17,11 @@ use mdle_language_service::lines::LineStarts;
 pub(crate) struct CheckResult {
     /// Diagnostics, by the URI of the document in which they are shown.
     pub(crate) diagnostics: BTreeMap<String, Vec<Value>>,
-    /// `true` if the document uses other files, or names files that cannot be read.
+    /// `true` if the document uses other files, or refers to files that cannot be read.
     pub(crate) uses_files: bool,
 }
 
-/// Checks the document `uri`; `book` is the address of the book, for links to explanations.
+/// Checks the document `uri`; `book` is the address of the documentation, for links to explanations.
 pub(crate) fn check(documents: &Documents, uri: &str, document: &Document, book: Option<&str>) -> CheckResult {
     if is_alphabet(&document.path) {
         return CheckResult { diagnostics: [(uri.to_owned(), of_alphabet(document))].into(), uses_files: false };
@@ -60,7 +60,8 @@ fn of_alphabet(document: &Document) -> Vec<Value> {
     findings(&sources, &found).into_iter().map(diagnostic).collect()
 }
 
-/// Returns the message about an input that cannot be checked, as in `mdlec check`, with the first error in the file.
+/// Returns the message about an input that cannot be checked, as `mdlec check` shows it, including the first error in
+/// the file.
 fn words(error: InputError) -> String {
     let own = Some(error.to_string()).filter(|own| !own.is_empty());
     let first = error.faulty_file().and_then(|FaultyFile { sources, diagnostics, .. }| {

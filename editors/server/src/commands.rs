@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 use crate::documents::Documents;
 use crate::params::RequestError;
 
-/// Name of the command that runs a plan. It returns the words of a command line for the editor's terminal.
+/// Name of the command that runs a plan. The command returns the words of a command line for the editor's terminal.
 pub(crate) const RUN: &str = "mdle.run";
-/// Name of the command that draws a plan. It returns an SVG.
+/// Name of the command that draws a plan. The command returns the picture as SVG.
 pub(crate) const DRAW: &str = "mdle.draw";
 
 /// Executes a command, whose arguments are the URI of a document and the name of a plan.

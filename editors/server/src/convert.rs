@@ -1,4 +1,4 @@
-//! Converts answers to protocol objects.
+//! Converts the results of the language features to objects of the protocol.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,7 +10,8 @@ use crate::documents::{Documents, Plan};
 use mdle_language_service::diagnostics::{FileRange, Finding};
 use mdle_language_service::lines::{LineStarts, Position};
 
-/// Converts places in a plan's files to protocol objects. The lines of each file are determined only once.
+/// Converts places in a plan's files to objects of the protocol. The positions of the lines of each file are determined
+/// only once.
 #[derive(Debug)]
 pub(crate) struct Converter<'d> {
     documents: &'d Documents,
@@ -39,24 +40,25 @@ impl<'d> Converter<'d> {
         self.plan.input.path(source).map(|path| self.documents.uri(path))
     }
 
-    /// Returns a range in the document of the plan itself.
+    /// Converts a range in the document of the plan itself.
     pub(crate) fn own(&mut self, range: &Range<usize>) -> Value {
         self.range(&FileRange { source: self.plan.input.source, range: range.clone() })
     }
 
-    /// Returns the range of a place in its file.
+    /// Converts the range of a place in its file.
     pub(crate) fn range(&mut self, place: &FileRange) -> Value {
         let text = self.plan.input.sources.text(place.source);
         let lines = self.lines.entry(place.source).or_insert_with(|| LineStarts::of(text));
         range(text, lines, &place.range)
     }
 
-    /// Returns the location of a place: its file and range.
+    /// Returns the location of a place, which consists of its file and its range.
     pub(crate) fn location(&mut self, place: &FileRange) -> Option<Value> {
         Some(json!({ "uri": self.uri(place.source)?, "range": self.range(place) }))
     }
 
-    /// Returns a diagnostic. It has a link to its explanation in the `book` if the book's address is known.
+    /// Converts a finding to a diagnostic of the protocol. If the address `book` of the documentation is known, the
+    /// diagnostic has a link to its explanation.
     pub(crate) fn diagnostic(&mut self, finding: &Finding, book: Option<&str>) -> Value {
         let related = finding.related.iter();
         let related: Vec<_> = related

@@ -1,4 +1,5 @@
-//! The documents open in the editor. Checks also need their robot and the other documents.
+//! The documents that are open in the editor, with the data that a check of a document needs: its robot and the other
+//! documents.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -59,11 +60,11 @@ impl Document {
     }
 }
 
-/// All open documents, by URI as the client writes it.
+/// All open documents, by their URIs, written as the client writes them.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Documents {
     pub(crate) open: BTreeMap<String, Document>,
-    /// Robot named in the client's settings, for plans without an `mdle.toml`.
+    /// Robot in the client's settings, for plans without an `mdle.toml`.
     pub(crate) robot: Option<String>,
 }
 
@@ -134,7 +135,7 @@ const MOST_FILES: usize = 10_000;
 /// Maximum depth of the search below the folder of an open document, in levels of folders.
 const DEEPEST: usize = 6;
 
-/// Appends the plan files of a folder.
+/// Adds the plan files of a folder and of its subfolders to `files`.
 #[allow(clippy::disallowed_methods, reason = "the files of a project are found by looking for them")]
 fn plans_in(folder: &Path, depth: usize, left: &mut usize, files: &mut BTreeSet<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };

@@ -1,4 +1,4 @@
-//! Converts a panic in a task to an error, so the server continues.
+//! Converts a panic in a task to an error, so that the server continues.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 

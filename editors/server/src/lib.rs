@@ -1,8 +1,8 @@
 //! The language server of MDLe, for every editor that supports the Language Server Protocol 3.17; `mdlec lsp` runs it
 //! on standard input and output.
 //!
-//! `mdle-language-service` implements the features, and answers with byte ranges. `requests` and `convert` translate
-//! between the features and the protocol, which counts positions in UTF-16 units.
+//! `mdle-language-service` implements the features, and its results contain byte ranges. `requests` and `convert`
+//! translate between the features and the protocol, which counts positions in UTF-16 units.
 
 mod answers;
 mod check;
@@ -22,7 +22,7 @@ use std::io;
 
 pub use server::serve_on;
 
-/// Reason why the server ends before the client requested it.
+/// Reason why the server ends although the client has not requested it.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
     /// The client violated the protocol.

@@ -12,7 +12,7 @@ use crate::params::RequestError;
 use crate::server::{Server, send};
 
 impl Server<'_> {
-    /// Checks one document of `stale`. If it is the last one, publishes the diagnostics of all documents in
+    /// Checks one document of `stale`. If no other document is left, publishes the diagnostics of all documents in
     /// `concerned`.
     pub(crate) fn check_one(&mut self) -> Result<(), ServeError> {
         let Some(uri) = self.stale.pop_first() else { return Ok(()) };
@@ -32,8 +32,8 @@ impl Server<'_> {
         concerned.iter().try_for_each(|uri| self.publish(uri))
     }
 
-    /// Stores the diagnostics of a check, and adds the documents that contain these or the previous diagnostics to
-    /// `concerned`.
+    /// Stores the diagnostics of a check, and adds to `concerned` the documents in which these diagnostics or those of
+    /// the previous check are shown.
     fn keep(&mut self, uri: String, checked: check::CheckResult) {
         if checked.uses_files {
             self.users.insert(uri.clone())
@@ -49,7 +49,7 @@ impl Server<'_> {
         self.concerned.extend(before.into_iter().flat_map(BTreeMap::into_keys));
     }
 
-    /// Publishes the diagnostics in a document. A diagnostic that several checks found is published once.
+    /// Publishes the diagnostics in a document. A diagnostic that several checks have found is published only once.
     fn publish(&self, uri: &str) -> Result<(), ServeError> {
         let mut diagnostics: Vec<&Value> = Vec::new();
         for diagnostic in self.found.values().filter_map(|found| found.get(uri)).flatten() {

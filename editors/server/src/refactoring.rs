@@ -19,8 +19,8 @@ use mdle_language_service::rename::{self as names, NamedItem};
 /// A definition: the canonical path of its file, and the byte range of the name.
 type Definition = (PathBuf, Range<usize>);
 
-/// Returns the definition at a place in a plan's files. The result is the same for all files that use the definition.
-/// Returns `None` if the place is in an alphabet file.
+/// Converts the place of a definition to a form that is the same for all files that use the definition. Returns `None`
+/// if the place is in an alphabet file.
 fn global(plan: &Plan, defined: &FileRange) -> Option<Definition> {
     let path = plan.input.path(defined.source)?;
     Some((place(path).unwrap_or_else(|_| path.to_owned()), defined.range.clone()))

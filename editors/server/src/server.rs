@@ -20,7 +20,7 @@ const PAUSE: Duration = Duration::from_millis(5);
 pub(crate) struct Server<'c> {
     pub(crate) connection: &'c Connection,
     pub(crate) documents: Documents,
-    /// Address of the book, for links to the explanations of messages.
+    /// Address of the documentation, for links to the explanations of messages.
     pub(crate) book: Option<String>,
     /// Received messages that have not been handled yet.
     pub(crate) waiting: VecDeque<Message>,
@@ -29,9 +29,10 @@ pub(crate) struct Server<'c> {
     /// URIs of documents whose diagnostics are published when all documents are checked. If they were published
     /// earlier, the diagnostics in a file that several documents use could refer to different versions of the file.
     pub(crate) concerned: BTreeSet<String>,
-    /// Diagnostics, by the URI of the checked document, and then by the URI of the document that contains them.
+    /// Diagnostics that were found. The first key is the URI of the checked document; the second key is the URI of the
+    /// document in which the diagnostics are shown.
     pub(crate) found: BTreeMap<String, BTreeMap<String, Vec<Value>>>,
-    /// URIs of open documents that use other files, or name files that cannot be read.
+    /// URIs of open documents that use other files, or refer to files that cannot be read.
     pub(crate) users: BTreeSet<String>,
     /// `true` after `shutdown`: only `exit` may follow.
     pub(crate) is_shut_down: bool,
@@ -172,7 +173,7 @@ impl Server<'_> {
         }
     }
 
-    /// Sends an error that belongs to no answer to the client's log.
+    /// Writes to the client's log an error that does not belong to an answer.
     pub(crate) fn log(&self, message: &str) -> Result<(), ServeError> {
         let params = json!({ "type": 1, "message": message });
         send(self.connection, Notification::new("window/logMessage".into(), params))

@@ -99,7 +99,7 @@ impl Server<'_> {
         self.mark_all();
     }
 
-    /// Marks a document, and all documents that may use it, to be checked.
+    /// Marks a document, and all documents that may use it, as documents to check.
     fn mark(&mut self, uri: &str) {
         self.stale.insert(uri.to_owned());
         self.stale.extend(self.users.iter().cloned());

@@ -1,4 +1,4 @@
-//! Open brackets of an unfinished text, with the words that follow in each bracket.
+//! Finds the open brackets of an unfinished text, and the words that follow in each bracket.
 
 use crate::words::{Word, WordKind};
 
@@ -14,7 +14,7 @@ pub(crate) enum Bracket {
     Arguments,
 }
 
-/// A call that is being typed.
+/// A call that the user is typing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OpenCall<'t> {
     /// Name of the called quark or plan.
@@ -25,7 +25,7 @@ pub struct OpenCall<'t> {
     pub is_condition: bool,
 }
 
-/// An open bracket, with the words read in it so far.
+/// An open bracket, and the data of the words that were read in it so far.
 #[derive(Debug, Clone)]
 pub(crate) struct OpenBracketWords<'t> {
     pub(crate) bracket: Bracket,
@@ -95,7 +95,7 @@ fn is_keyword(word: &str) -> bool {
     ["OR", "AND", "NOT", "RISING", "or", "and", "not", "rising", "after", "Atom", "ExecPlan"].contains(&word)
 }
 
-/// Updates the call that is being typed in the bracket `open`.
+/// Updates the call that the user is typing in the bracket `open`.
 fn read_in<'t>(open: &mut OpenBracketWords<'t>, word: &Word<'t>) {
     let is_condition = open.bracket == Bracket::Condition;
     let begins = |name| Some(OpenCall { name, args: 0, is_condition });

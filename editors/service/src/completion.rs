@@ -1,4 +1,4 @@
-//! Proposes words at the cursor that are valid there and that the robot supports.
+//! Proposes words that are valid at the cursor and that the robot supports.
 
 use std::ops::Range;
 
@@ -169,7 +169,7 @@ fn kind_of(view: &View<'_>, call: &OpenCall<'_>) -> Option<ParameterKind> {
     bare_unit(plan.params.get(call.args)?.type_name.node).map(|unit| unit.kind)
 }
 
-/// Returns the declaration of the quark that is being typed; `None` if it is not declared.
+/// Returns the declaration of the quark that the user is typing; `None` if it is not declared.
 fn declared<'v>(view: &'v View<'_>, call: &OpenCall<'_>) -> Option<&'v Declaration> {
     let kind = if call.is_condition { DeclarationKind::Interrupt } else { DeclarationKind::Control };
     let start = mdle_compiler::diagnostic::Span { start: 0, end: 0 };

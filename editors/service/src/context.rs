@@ -23,7 +23,7 @@ pub enum Expected {
     Type,
     /// The unit of the number that the cursor touches.
     Unit,
-    /// An argument, or a word after the call.
+    /// An argument, or a word that follows the call.
     Argument,
     /// No word: the cursor is in a comment or a text, or where the user chooses a name.
     Nothing,
@@ -42,8 +42,8 @@ pub struct Context<'t> {
     pub labels: Vec<&'t str>,
 }
 
-/// Returns the context of the cursor at `byte`, determined by the text before it; the labels are those of the whole
-/// plan.
+/// Returns the context of the cursor at `byte`, determined by the text before it; the labels in the result are those of
+/// the whole plan.
 #[must_use]
 pub fn context(text: &str, byte: usize) -> Context<'_> {
     let mut stack: Vec<OpenBracketWords<'_>> = Vec::new();
@@ -86,7 +86,7 @@ pub fn context(text: &str, byte: usize) -> Context<'_> {
     found
 }
 
-/// Returns the context of the cursor if it is before, in, or at the end of `word`.
+/// Returns the context of the cursor if the cursor is before, in, or at the end of `word`.
 fn at_cursor<'t>(stack: &[OpenBracketWords<'t>], word: &Word<'t>, byte: usize) -> Context<'t> {
     let is_in = word.range.start < byte;
     let typed = if is_in && word.kind == WordKind::Name { word.range.start..byte } else { byte..byte };

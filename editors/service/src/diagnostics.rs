@@ -1,4 +1,4 @@
-//! Diagnostics of a document and of the files that it uses, with the content that `mdlec check` shows.
+//! Diagnostics of a document and of the files that it uses, with the same content as in `mdlec check`.
 
 use std::ops::Range;
 
@@ -20,7 +20,7 @@ pub struct Finding {
     pub code: Code,
     /// Place of the error or warning.
     pub place: FileRange,
-    /// Message of the diagnostic, text at the place, and help; one line each.
+    /// The message of the diagnostic, the text at the place, and the help, each on its own line.
     pub message: String,
     /// Places that explain the diagnostic, each with a text.
     pub related: Vec<(FileRange, String)>,
@@ -41,7 +41,7 @@ pub fn place(sources: &Sources, span: Span) -> FileRange {
     FileRange { source, range }
 }
 
-/// Converts diagnostics to findings, at most as many as are shown to a user.
+/// Converts diagnostics to findings, up to the maximum number that is shown to a user.
 #[must_use]
 pub fn findings(sources: &Sources, diagnostics: &[Diagnostic]) -> Vec<Finding> {
     let shown = diagnostics.iter().take(most_shown(diagnostics));

@@ -39,7 +39,8 @@ pub fn range(view: &View<'_>, range: &Range<usize>) -> Option<Vec<TextEdit>> {
     Some(difference(text, formatted.trim_end(), whole.start))
 }
 
-/// Returns the edit that turns `old`, which begins at byte `start`, into `new`; an empty list if they are equal.
+/// Returns the edit that changes `old` to `new`; an empty list if they are equal. `old` begins at the byte `start` of
+/// the document.
 fn difference(old: &str, new: &str, start: usize) -> Vec<TextEdit> {
     let same = |pair: &(char, char)| pair.0 == pair.1;
     let prefix: usize = old.chars().zip(new.chars()).take_while(same).map(|(letter, _)| letter.len_utf8()).sum();

@@ -117,8 +117,8 @@ fn about(alphabet: &Alphabet, declaration: &Declaration) -> String {
     text
 }
 
-/// Returns a text with the value of a number in its own unit, in `bare` (the unit of a number without a unit at this
-/// place) and in the base unit. Returns `None` if a unit is unknown or does not fit.
+/// Returns a text with the value of a number in its own unit, in the unit `bare` and in the base unit. `bare` is the
+/// unit that a number without a unit would have at this place. Returns `None` if a unit is unknown or does not fit.
 fn number(written: &str, bare: Option<Unit>) -> Option<String> {
     let bare = bare?;
     let digits = written.trim_end_matches(|letter: char| !letter.is_ascii_digit());
@@ -173,7 +173,8 @@ fn label(view: &View<'_>, mentions: &[Mention<'_>], mention: &Mention<'_>) -> St
     format!("Label `{}`: the plan records which operand ended its element. {asked}", mention.text)
 }
 
-/// Returns the text about a plan or behavior: parameters, doc comment, condition, timers, and the next element.
+/// Returns the text about a plan or a behavior. It contains the parameters, the doc comment, the condition, the timers
+/// and the next element.
 fn plan(view: &View<'_>, mention: &Mention<'_>) -> Option<String> {
     let defined = mention.defined?;
     let found = view.files.plans.iter().find_map(|plan| {
@@ -205,7 +206,7 @@ fn plan(view: &View<'_>, mention: &Mention<'_>) -> Option<String> {
     Some(text)
 }
 
-/// Returns the behavior whose name is at `defined`, with the place of the next element.
+/// Returns the behavior whose name is at `defined`, and the place of the next element.
 fn behavior<'s>(elements: &[Element<'s>], defined: Span) -> Option<(Plan<'s>, Option<Span>)> {
     elements.iter().enumerate().find_map(|(at, element)| {
         if let Primary::Plan(plan) = element.primary
@@ -217,7 +218,7 @@ fn behavior<'s>(elements: &[Element<'s>], defined: Span) -> Option<(Plan<'s>, Op
     })
 }
 
-/// Returns the text of a condition without the outer parentheses.
+/// Returns the text of a condition without its outer parentheses.
 fn operands(view: &View<'_>, condition: &Condition<'_>) -> String {
     let text = view.words(condition.span);
     let inner = text.strip_prefix('(').and_then(|text| text.strip_suffix(')'));

@@ -1,7 +1,7 @@
 //! Editor features of MDLe, for the language server and for the playground in the browser.
 //!
-//! A feature is a function from a [`View`](view::View), a checked document, to an answer with byte ranges. It does no
-//! I/O, and does not depend on a protocol or an operating system.
+//! A feature is a function that receives a checked document as a [`View`](view::View), and returns a result with byte
+//! ranges. It does no I/O, and does not depend on a protocol or an operating system.
 #![forbid(unsafe_code)]
 
 mod brackets;

@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-/// A position: a line and a UTF-16 column, both from 0.
+/// A position: a line and a UTF-16 column, both counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Position {
-    /// Line number, from 0.
+    /// Line number, counted from 0.
     pub line: u32,
-    /// Column in UTF-16 code units, from 0.
+    /// Column in UTF-16 code units, counted from 0.
     pub character: u32,
 }
 

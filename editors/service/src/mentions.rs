@@ -97,8 +97,8 @@ pub fn quark_name<'n>(alphabet: &Alphabet, name: &'n str, kind: DeclarationKind)
     }
 }
 
-/// Returns the declaration of the called quark. If several declarations have this name, selects by the number of
-/// arguments.
+/// Returns the declaration of the called quark. If several declarations have this name, the number of arguments selects
+/// one of them.
 #[must_use]
 pub fn declaration<'a>(alphabet: &'a Alphabet, call: &Call<'_>, kind: DeclarationKind) -> Option<&'a Declaration> {
     let name = quark_name(alphabet, call.name, kind);
@@ -108,12 +108,12 @@ pub fn declaration<'a>(alphabet: &'a Alphabet, call: &Call<'_>, kind: Declaratio
     of_kind().find(fits).or_else(|| of_kind().next())
 }
 
-/// Returns the unit of an argument for this parameter that is a number without a unit.
+/// Returns the unit that a number without a unit has if it is the argument for this parameter.
 fn unit_of(param: &mdle_compiler::alphabet::Param) -> Option<Unit> {
     param.unit.or_else(|| param.kind.base_unit())
 }
 
-/// Returns the unit of an argument for a plan's parameter of this type that is a number without a unit
+/// Returns the unit that a number without a unit has if it is the argument for a plan's parameter of this type
 /// (docs/src/reference/language.md, 3.4).
 #[must_use]
 pub fn bare_unit(type_name: &str) -> Option<Unit> {

@@ -61,8 +61,8 @@ pub fn is_name(name: &str) -> bool {
     found.is_empty() && plan.name.node == name && matches!(plan.elements, [only] if is_other(only))
 }
 
-/// Returns, for each mention, its role as a number and the index of the mention that defines its name. A rename keeps
-/// all meanings if the list is the same before and after it.
+/// Returns, for each mention, a number for its role and the index of the mention that defines its name. If the list is
+/// the same before and after a rename, the rename changes no meaning.
 #[must_use]
 pub fn meanings(view: &View<'_>) -> Vec<(u8, Option<usize>)> {
     let mentions = mentions(view.files, view.alphabet);

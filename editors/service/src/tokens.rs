@@ -7,7 +7,7 @@ use mdle_compiler::alphabet::DeclarationKind;
 use crate::mentions::{Role, mentions};
 use crate::view::View;
 
-/// Names of the token kinds, a subset of those in the protocol.
+/// Names of the token kinds, a subset of the names in the protocol.
 pub const KINDS: &[&str] =
     &["class", "parameter", "property", "function", "event", "variable", "type", "number", "string"];
 

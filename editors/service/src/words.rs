@@ -37,7 +37,7 @@ pub(crate) fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
     })
 }
 
-/// Returns the kind and the length of the first word of a text.
+/// Returns the kind and the length, in bytes, of the first word of a text.
 fn next(text: &str) -> (WordKind, usize) {
     let while_in = |is_in: fn(char) -> bool| text.find(|letter| !is_in(letter)).unwrap_or(text.len());
     let first = text.chars().next().unwrap_or(' ');

@@ -1,24 +1,24 @@
-//! Provides the alphabets that are part of mdlec, the shared alphabet and the alphabets of the targets, as texts and in
-//! parsed form.
+//! Provides the alphabets that are built into mdlec, as texts and in parsed form: the shared alphabet and the alphabets
+//! of the targets.
 
 use crate::alphabet::{self as language, AlphabetFile, Capability};
 use crate::diagnostic::{Diagnostic, Sources, has_errors};
 
-/// An alphabet that is part of mdlec.
+/// An alphabet that is built into mdlec.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Alphabet {
-    /// Name of the alphabet in `--target` or `use`.
+    /// Name of the alphabet, as used after `--target` or `use`.
     pub name: &'static str,
-    /// Name of the file in messages.
+    /// Name of the file, as messages show it.
     pub file: &'static str,
     /// Text of the file.
     pub text: &'static str,
-    /// `true` for the alphabet of a target, `false` for a shared one.
+    /// `true` for the alphabet of a target, `false` for a shared alphabet.
     pub target: bool,
 }
 
-/// Returns the alphabets that are part of mdlec: first the shared alphabets, then the alphabets of the targets in the
-/// order of their names.
+/// Returns the alphabets that are built into mdlec: first the shared alphabets, then the alphabets of the targets,
+/// sorted by name.
 #[must_use]
 pub fn alphabets() -> &'static [Alphabet] {
     ALPHABETS
@@ -26,7 +26,7 @@ pub fn alphabets() -> &'static [Alphabet] {
 
 include!(concat!(env!("OUT_DIR"), "/alphabets.rs"));
 
-/// An alphabet, combined with the shared alphabets that it uses, and the files that define it.
+/// A target's alphabet combined with the shared alphabets that it uses, and the files that define them.
 #[derive(Debug)]
 pub struct ReadAlphabet {
     /// The alphabet.
@@ -35,8 +35,8 @@ pub struct ReadAlphabet {
     pub files: Vec<(String, String)>,
 }
 
-/// Reads the shared alphabets and `own`, the file name and the text of a target's alphabet. Without `own`, the alphabet
-/// is that of a robot with every capability.
+/// Reads the shared alphabets, and the target's alphabet in `own`, which contains the file name and the text. Without
+/// `own`, the result is the alphabet of a robot with every capability.
 ///
 /// # Errors
 /// Fails if the alphabets have errors; returns the files and the diagnostics.
@@ -65,8 +65,7 @@ pub fn read(own: Option<(String, String)>) -> Result<ReadAlphabet, (Sources, Vec
     }
 }
 
-/// Returns the robots that are part of mdlec, each with its capabilities, including the capabilities that need an
-/// engine.
+/// Returns the robots that are built into mdlec, with their capabilities, including capabilities that need an engine.
 fn robots() -> Vec<(String, Vec<Capability>)> {
     let targets = alphabets().iter().filter(|alphabet| alphabet.target);
     let head = |builtin: &Alphabet| {
@@ -77,7 +76,7 @@ fn robots() -> Vec<(String, Vec<Capability>)> {
     targets.filter_map(head).collect()
 }
 
-/// State while alphabet files are read one after the other.
+/// State of reading several alphabet files one after the other.
 #[derive(Default)]
 struct AlphabetFiles {
     sources: Sources,

@@ -1,4 +1,4 @@
-//! Diagnostics: messages with a code, places and advice, rendered with codespan-reporting.
+//! Diagnostics: messages with a code, places in the text, and advice. They are rendered with codespan-reporting.
 
 mod excerpt;
 mod explain;
@@ -15,22 +15,22 @@ pub use help::{Edit, Help};
 pub use json::{FileRange, JsonMessage};
 pub use sources::Sources;
 
-/// Identifier of a source file: its byte offset in the concatenation of all files.
+/// Identifier of a source file: the byte offset of the file in the concatenation of all files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(pub u32);
 
-/// A range of a source's text, as byte offsets in the concatenation of all files. Half of a syntax tree consists of
-/// spans, so small spans make the parser fast.
+/// A range of a source's text, given by byte offsets in the concatenation of all files. Half of a syntax tree consists
+/// of spans, so their small size makes the parser fast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
     /// Byte offset of the span's start.
     pub start: u32,
-    /// Byte offset after the span's last byte.
+    /// Byte offset of the first byte after the span.
     pub end: u32,
 }
 
 impl Span {
-    /// Returns the span between two byte offsets of a file.
+    /// Creates the span between two byte offsets of a file.
     #[must_use]
     pub fn new(source: SourceId, start: usize, end: usize) -> Self {
         let among_all = |byte| source.0.saturating_add(u32::try_from(byte).unwrap_or(u32::MAX));
@@ -54,7 +54,7 @@ impl Span {
 /// Severity of a diagnostic, in ascending order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The plan is valid, but perhaps not what was meant.
+    /// The plan is valid, but may not mean what its author intended.
     Warning,
     /// The plan is invalid.
     Error,
@@ -63,7 +63,7 @@ pub enum Severity {
 /// Declares the codes, each with its title.
 macro_rules! codes {
     ($($name:ident $title:literal,)*) => {
-        /// Code of a diagnostic: E for errors, which stop the compiler, W for warnings.
+        /// Code of a diagnostic. Codes with E are errors, which stop the compiler; codes with W are warnings.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code { $(#[doc = $title] $name,)* }
 
@@ -71,7 +71,7 @@ macro_rules! codes {
             /// Every code.
             pub const ALL: &[Self] = &[$(Self::$name,)*];
 
-            /// Returns the code as it is printed.
+            /// Returns the name of the code, as it is printed.
             #[must_use]
             pub fn name(self) -> &'static str {
                 match self { $(Self::$name => stringify!($name),)* }
@@ -164,7 +164,7 @@ impl fmt::Display for Code {
     }
 }
 
-/// A place in a diagnostic.
+/// A place in the text to which a diagnostic refers.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
     /// Span of the place.
@@ -189,13 +189,13 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// Makes a diagnostic at `span`; `here` is the text beside the place.
+    /// Creates a diagnostic at `span`; `here` is the text that is shown beside this place.
     pub fn new(code: Code, message: impl Into<String>, span: Span, here: impl Into<String>) -> Self {
         let label = Label { span, text: here.into(), primary: true };
         Self { code, message: message.into(), labels: vec![label], help: Vec::new() }
     }
 
-    /// Adds the place `span`, which explains the mistake.
+    /// Adds a further place to the diagnostic; `span` explains the mistake.
     #[must_use]
     pub fn also(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label { span, text: text.into(), primary: false });
@@ -217,19 +217,19 @@ pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
 
 /// Maximum number of diagnostics that are shown to people.
 const SHOWN: usize = 100;
-/// Maximum number of diagnostics that are shown to people if more than this number are errors of notation: the file is
-/// then probably not a plan.
+/// Maximum number of diagnostics that are shown to people if there are more errors of notation than this number. The
+/// file is then probably not a plan.
 const SHOWN_OF_NO_PLAN: usize = 10;
 
-/// Returns the maximum number of these diagnostics that are shown to people.
+/// Returns the number of these diagnostics that may be shown to people.
 #[must_use]
 pub fn most_shown(diagnostics: &[Diagnostic]) -> usize {
     let notation = diagnostics.iter().filter(|diagnostic| diagnostic.code.is_notation()).count();
     if notation > SHOWN_OF_NO_PLAN { SHOWN_OF_NO_PLAN } else { SHOWN }
 }
 
-/// Decides whether a plan with these diagnostics may be used: without errors, and with `deny_warnings` without
-/// warnings.
+/// Decides whether a plan with these diagnostics may be used. It must have no errors and, if `deny_warnings` is `true`,
+/// no warnings.
 ///
 /// # Errors
 /// Returns the number of errors, or of denied warnings, as text.
@@ -244,7 +244,7 @@ pub fn judged(diagnostics: &[Diagnostic], deny_warnings: bool) -> Result<(), Str
     }
 }
 
-/// Writes a number with its noun: `1 error`, `2 errors`.
+/// Returns a number followed by its noun: `1 error`, `2 errors`.
 fn number(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }

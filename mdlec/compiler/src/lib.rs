@@ -1,4 +1,4 @@
-//! The compiler of MDLe: text in, Rust out.
+//! The compiler of MDLe: translates the text of plans to Rust.
 //!
 //! ```text
 //! text ─syntax→ tree ─projection→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate
@@ -25,7 +25,7 @@ pub mod trace;
 use alphabet::Alphabet;
 use diagnostic::{Diagnostic, SourceId};
 
-/// A plan after each stage.
+/// A plan in the form that each stage produces.
 #[derive(Debug, Clone)]
 pub struct Compiled {
     /// Resolved plan; may be degenerate.
@@ -34,13 +34,13 @@ pub struct Compiled {
     pub nondegenerate: plan::Nondegenerate,
     /// Plan as a state machine.
     pub machine: fsm::Machine,
-    /// Group and robot of the plan, if it was projected from the plan of a group.
+    /// Group and robot of the plan; `None` if the plan was not projected from the plan of a group.
     pub part: Option<projection::RobotPlan>,
 }
 
 impl Compiled {
-    /// Replaces the names in a script by quark texts of the plan ([`trace::Script::in_words_of`]). For the plan of one
-    /// robot of a group, the script may contain texts of the group's plan.
+    /// Replaces the names in a script with quark texts of the plan ([`trace::Script::in_words_of`]). If the plan is for
+    /// one robot of a group, the script may contain texts of the group's plan.
     ///
     /// # Errors
     /// Fails at the first name that is neither an interrupt of the plan nor a law of the plan that completes.
@@ -53,8 +53,8 @@ impl Compiled {
     }
 }
 
-/// Compiles the plan `wanted` of a text to a state machine or, without `wanted`, every plan that no other plan uses;
-/// [`rust::emit`] turns a machine into Rust. Returns no plan if there is an error.
+/// Compiles plans to state machines; [`rust::emit`] turns a machine into Rust. If `wanted` is given, compiles only the
+/// plan with this name; otherwise, compiles every plan that no other plan uses. Returns no plan if there is an error.
 #[must_use]
 pub fn compile(
     source: SourceId,
@@ -77,11 +77,12 @@ pub fn compile_with(
     compile_within(source, text, alphabet, wanted, loader, |_| Ok(()))
 }
 
-/// Checks the size of a plan for a certain use, such as a picture; returns an error if the plan is too large.
+/// A function that checks whether a plan is small enough for a certain use, such as a picture; returns an error if the
+/// plan is too large.
 pub type Limit = fn(&plan::Nondegenerate) -> Result<(), Diagnostic>;
 
-/// Compiles like [`compile_with`]. If there is only one plan and it exceeds `limit`, it is not lowered, because
-/// lowering takes far longer than all stages before it.
+/// Compiles plans as [`compile_with`] does. If there is only one plan and it exceeds `limit`, it is not lowered,
+/// because lowering takes far longer than all earlier stages.
 #[must_use]
 pub fn compile_within(
     source: SourceId,
@@ -94,7 +95,7 @@ pub fn compile_within(
     stages(source, text, alphabet, wanted, loader, (plan::Bounds::FILES, Some(limit)))
 }
 
-/// Compiles untrusted plans like [`compile_with`]. If a plan exceeds `bounds`, an error is reported before the plan
+/// Compiles untrusted plans as [`compile_with`] does. If a plan exceeds `bounds`, an error is reported before the plan
 /// uses up memory.
 #[must_use]
 pub fn compile_bounded(
@@ -108,7 +109,8 @@ pub fn compile_bounded(
     stages(source, text, alphabet, None, loader, (bounds, Some(all)))
 }
 
-/// Returns the diagnostics of [`compile_with`] for a file that may use others, without keeping the compiled plans.
+/// Returns the diagnostics that [`compile_with`] reports for a file that may use other files. Does not keep the
+/// compiled plans.
 #[must_use]
 pub fn check_with(
     source: SourceId,
@@ -177,8 +179,8 @@ fn stages(
     (compiled, once_each(found))
 }
 
-/// Removes advice with edits from the diagnostics of the plan of one robot of a group, because the edits refer to the
-/// text of this plan and not to the text of the group's plan.
+/// Removes advice with edits from the diagnostics of a plan that is for one robot of a group. The edits would refer to
+/// the text of this plan, but the user has only the text of the group's plan.
 fn of_part(mut found: Vec<Diagnostic>, part: Option<&projection::RobotPlan>) -> Vec<Diagnostic> {
     if part.is_some() {
         found.iter_mut().for_each(|diagnostic| diagnostic.help.retain(|help| help.edit.is_none()));

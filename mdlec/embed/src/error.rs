@@ -1,4 +1,4 @@
-//! Reasons why a plan could not be embedded, as a build script shows them.
+//! Defines the reasons why a plan could not be embedded, with the messages that a build script shows.
 
 use std::fmt;
 use std::io;
@@ -15,12 +15,12 @@ pub enum EmbedError {
     /// The plan has errors.
     #[error("{}", report(.sources, .diagnostics))]
     Plan {
-        /// Files to which the diagnostics refer.
+        /// Texts of the files to which the diagnostics refer.
         sources: Box<Sources>,
-        /// Diagnostics of `mdlec check`, which include errors.
+        /// Diagnostics as in `mdlec check`; at least one is an error.
         diagnostics: Vec<Diagnostic>,
     },
-    /// The plan or the target cannot be read, or the plan to compile cannot be selected in the file.
+    /// The plan or the target cannot be read, or it is not clear which plan of the file to compile.
     #[error("{}", .0.message(Spelling::BuildScript))]
     Input(InputError),
     /// The process is not a build script: cargo has not set `OUT_DIR`.

@@ -1,4 +1,4 @@
-//! Embeds plans in an application: the application's build script compiles them to Rust code, which the
+//! Embeds plans in an application: the build script of the application compiles the plans to Rust code, which the
 //! application includes.
 //!
 //! ```no_run
@@ -54,19 +54,20 @@ pub fn plan(file: impl Into<PathBuf>) -> Embed {
 }
 
 impl Embed {
-    /// Sets the robot, which is required: a name from `mdlec targets`, or the folder of a target of your own.
+    /// Sets the robot: a name from `mdlec targets`, or the folder of a target of your own. This call is required.
     pub fn target(self, target: impl Into<String>) -> Self {
         Self { target: Some(target.into()), ..self }
     }
 
-    /// Selects a plan of the file. This is required if the file contains several plans that no other plan uses.
+    /// Selects a plan of the file. This call is required if the file contains several plans that no other plan uses.
     pub fn plan(self, name: impl Into<String>) -> Self {
         Self { plan: Some(name.into()), ..self }
     }
 
-    /// Writes `$OUT_DIR/STEM.rs`, where `STEM` is the plan file's name without its extension; embedding two plans of
-    /// one file overwrites the first. Makes cargo show the warnings, and makes it run the build script again when an
-    /// input file changes: the plan, a file that it uses, or the alphabet of a target of your own.
+    /// Writes `$OUT_DIR/STEM.rs`, where `STEM` is the plan file's name without its extension; a second plan that is
+    /// embedded from the same file overwrites the first. Makes cargo show the warnings. Also makes cargo run the build
+    /// script again if an input file changes: the plan, a file that the plan uses, or the alphabet of a target of your
+    /// own.
     ///
     /// # Errors
     /// Fails if the plan has errors, if its file or the target cannot be read, or if the Rust code cannot be written. A
@@ -113,7 +114,7 @@ impl Embed {
     }
 }
 
-/// Returns `true` if `output` is the same file as one of `inputs`, even if the paths differ.
+/// Returns `true` if `output` is the same file as one of `inputs`, even under a different path.
 fn is_among(output: &Path, inputs: &[PathBuf]) -> bool {
     let Ok(output) = output.canonicalize() else { return false };
     inputs.iter().any(|input| input.canonicalize().is_ok_and(|input| input == output))
@@ -132,8 +133,8 @@ fn warning_line(warning: &JsonMessage<'_>) -> String {
     format!("cargo::warning={}\n", Printable(text))
 }
 
-/// Returns the line that makes cargo watch `file`. Fails if the name contains a line break, since cargo would
-/// read the text after it as another instruction.
+/// Returns the line that makes cargo watch `file`. Fails if the name contains a line break, because cargo would read
+/// the text after the line break as another instruction.
 fn watched(file: &Path) -> Result<String, EmbedError> {
     let line = format!("cargo::rerun-if-changed={}", file.display());
     if line.contains(['\n', '\r']) { Err(EmbedError::LineBreak(file.to_owned())) } else { Ok(line + "\n") }

@@ -1,4 +1,4 @@
-//! The reasons why a plan or a target cannot be read, in sentences that tell the user what to type.
+//! Defines the reasons why a plan or a target cannot be read, with messages that tell the user what to type.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use mdle_compiler::diagnostic::{Diagnostic, Sources};
 pub enum InputError {
     /// A file cannot be read, or a folder is not a target; contains the error message.
     Unusable(String),
-    /// No target is named, although Rust code can be written only for a target.
+    /// No target is selected, although Rust code can be written only for a target.
     NoTarget,
     /// There is no target of this name.
     UnknownTarget(String),
@@ -54,9 +54,9 @@ pub enum InputError {
 pub struct FaultyFile {
     /// Files to which the diagnostics refer.
     pub sources: Sources,
-    /// Errors of the file, perhaps with warnings.
+    /// Errors of the file, and possibly warnings.
     pub diagnostics: Vec<Diagnostic>,
-    /// Name of the target, if the file is an alphabet.
+    /// Name of the target if the file is an alphabet; otherwise `None`.
     pub target: Option<String>,
 }
 
@@ -69,7 +69,7 @@ pub enum Spelling {
     BuildScript,
     /// Entries of a TOML file: `target = "sim"`.
     Entry,
-    /// Entries of a test file, in which `plan` names a file, and `name` names a plan.
+    /// Entries of a test file. In these entries, `plan` names a file and `name` names a plan.
     TestEntry,
 }
 
@@ -95,8 +95,8 @@ impl Spelling {
 }
 
 impl InputError {
-    /// Returns the file with errors, if a file has errors. This includes a file that is named in another file, such as
-    /// an `mdle.toml`. Returns `None` for all other reasons.
+    /// Returns the file with errors if this is the reason; otherwise `None`. The file may also be one that another
+    /// file, such as an `mdle.toml`, names.
     #[must_use]
     pub fn faulty_file(self) -> Option<FaultyFile> {
         match self {
@@ -112,8 +112,8 @@ impl InputError {
     }
 
     /// Returns the message, with options in the user's syntax. The message does not include the diagnostics of
-    /// [`InputError::Faulty`]; it is empty for a plan file with errors, and names the target of an alphabet with
-    /// errors.
+    /// [`InputError::Faulty`]. It is empty for a plan file with errors; for an alphabet with errors, it names the
+    /// target.
     #[must_use]
     pub fn message(&self, spelling: Spelling) -> String {
         match self {

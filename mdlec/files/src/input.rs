@@ -28,7 +28,7 @@ pub struct Input {
     read: BTreeMap<PathBuf, SourceId>,
     /// Texts that are used instead of files.
     unsaved: Unsaved,
-    /// Plans of single robots that the last compilation derived from the plans of groups.
+    /// Plans of single robots, which the last compilation has derived from the plans of groups.
     parts: Vec<RobotPlan>,
     /// `true` if the files that the plan uses must not be read.
     is_alone: bool,
@@ -105,15 +105,15 @@ impl Input {
         roots(self.source, &text, alphabet, self)
     }
 
-    /// Returns the plans of the robots of the file's groups as MDLe text, or only the plan `wanted`. The text is empty
-    /// if the file has no group.
+    /// Returns, as MDLe text, the plans of all robots in the groups of the file, or only the plan `wanted`. The text is
+    /// empty if the file has no group.
     pub fn projected(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> String {
         let text = self.sources.text(self.source).to_owned();
         projected(self.source, &text, alphabet, wanted, self)
     }
 
-    /// Returns the group whose plan is called `wanted`. Without a name, returns the group of the file's only plan.
-    /// Returns `None` if there is no such plan, or if it is not the plan of a group.
+    /// Returns the group whose plan is called `wanted`. If `wanted` is `None`, returns the group of the file's only
+    /// plan. Returns `None` if there is no such plan, or if it is not the plan of a group.
     pub fn group(&mut self, wanted: Option<&str>) -> Option<RobotGroup> {
         let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
         let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
@@ -142,7 +142,7 @@ impl Input {
         self.paths.keys().map(|source| self.sources.text(*source))
     }
 
-    /// Returns the paths of the files that were read for the plan and for `target`, which no output may
+    /// Returns the paths of the files that were read for the plan and for `target`, none of which an output may
     /// overwrite.
     pub fn inputs(&self, target: &Target) -> Vec<PathBuf> {
         let named = |path: &Path| if path == Path::new("-") { PathBuf::from("/dev/stdin") } else { path.to_owned() };
@@ -210,7 +210,7 @@ impl Input {
         }
     }
 
-    /// Emits a plan of the file as Rust, for the crate of `target`.
+    /// Converts a plan of the file to Rust code for the crate of `target`.
     ///
     /// # Errors
     /// Fails with E0501 for a plan that is too large.
@@ -268,7 +268,7 @@ pub fn read_plan(path: &Path, target: &Target) -> Result<Input, InputError> {
     plan(path, read_text(path, read::LARGEST_PLAN)?, target)
 }
 
-/// Returns the input for a plan file whose text has been read.
+/// Returns the input for the plan file at `path`, whose text has already been read.
 ///
 /// # Errors
 /// Fails if the text is too long.
@@ -301,8 +301,8 @@ pub fn add(sources: &mut Sources, path: &Path, text: String) -> Result<SourceId,
     }
 }
 
-/// Returns the name of the plan file in the folder of `path` that the user probably meant: a name that differs only in
-/// case or in the extension or, failing that, only in a few letters.
+/// Returns the name of the plan file in the folder of `path` that the user probably meant. This is a name that differs
+/// only in case or in the extension. If there is none, it is a name that differs only in a few letters.
 fn like(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?.to_lowercase();
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));

@@ -1,6 +1,6 @@
 //! Reads plan files, the files that they use, and the alphabets of targets, for the stages of [`mdle_compiler`].
 //!
-//! This crate prints nothing. Errors are returned as an [`InputError`], whose message says what to type instead.
+//! This crate prints nothing. Errors are returned as an [`InputError`], whose message contains the correction.
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
 mod error;

@@ -18,11 +18,11 @@ pub const LARGEST_DATA: u64 = 1_000_000_000;
 /// Reason why a file is not read.
 #[derive(Debug)]
 pub enum Unread {
-    /// The file is not a regular file, but of this kind.
+    /// The file is not a regular file; contains the kind of the file.
     Irregular(&'static str),
     /// The file is larger than this maximum, in bytes.
     TooLarge(u64),
-    /// The file has no end yet, because a writer may add more.
+    /// The end of the file is not known, because a writer may append more.
     Endless,
     /// Error of the system.
     System(io::Error),
@@ -35,7 +35,7 @@ impl Unread {
         matches!(self, Self::System(error) if error.kind() == io::ErrorKind::NotFound)
     }
 
-    /// Returns a hint for commands that can read standard input.
+    /// Returns a hint for users of commands that can read standard input.
     #[must_use]
     pub fn help(&self) -> &'static str {
         match self {
@@ -44,7 +44,7 @@ impl Unread {
         }
     }
 
-    /// Returns the error message for a file that messages call `name`.
+    /// Returns the error message for a file, in which the file is called `name`.
     #[must_use]
     pub fn of(&self, name: impl fmt::Display) -> String {
         match self {

@@ -1,4 +1,5 @@
-//! `mdle.toml`: target, world and options of runs of the plans in its folder (docs/src/reference/interfaces.md, 1.4).
+//! Reads an `mdle.toml`, which contains the target, the world and the options of runs for the plans in its folder
+//! (docs/src/reference/interfaces.md, 1.4).
 
 mod text;
 
@@ -25,7 +26,7 @@ pub struct Settings {
     text: SettingsText,
 }
 
-/// Worlds and options of a target that are known before a run.
+/// The worlds and the options of a target, as far as they are known before a run.
 #[derive(Debug, Default)]
 pub struct KnownSettings {
     /// Names of the worlds; empty if they are not known.
@@ -38,7 +39,7 @@ pub struct KnownSettings {
 /// A child process that an `mdle.toml` names as a module.
 #[derive(Debug)]
 pub struct NamedProcess<'s> {
-    /// Place of the entry, as in `plans/mdle.toml:3`.
+    /// Place of the entry, such as `plans/mdle.toml:3`.
     pub place: String,
     /// Name of the module.
     pub name: &'s str,
@@ -49,7 +50,7 @@ pub struct NamedProcess<'s> {
 /// The safety file that an `mdle.toml` names.
 #[derive(Debug)]
 pub struct SafetyEntry {
-    /// Place of the entry, as in `plans/mdle.toml:3`.
+    /// Place of the entry, such as `plans/mdle.toml:3`.
     pub place: String,
     /// Path of the safety file.
     pub file: PathBuf,
@@ -58,13 +59,13 @@ pub struct SafetyEntry {
 /// An option that a run gets from an `mdle.toml`.
 #[derive(Debug)]
 pub struct RunOption {
-    /// Place of the option, as in `plans/mdle.toml:3`.
+    /// Place of the option, such as `plans/mdle.toml:3`.
     place: String,
     /// Arguments for the executable.
     pub arguments: Vec<OsString>,
 }
 
-/// Returns the path of the `mdle.toml` beside the plan in the file `plan`. A plan on standard input has none.
+/// Returns the path of the `mdle.toml` beside the plan in the file `plan`. Returns `None` for a plan on standard input.
 #[must_use]
 pub fn file_beside(plan: &Path) -> Option<PathBuf> {
     (plan != Path::new("-")).then(|| plan.with_file_name(NAME))
@@ -94,8 +95,8 @@ impl Settings {
         Ok(Self { file: Some(file), text })
     }
 
-    /// Returns the target that the command line names with `option`, or else the target of the file; without
-    /// either, a robot that has every capability.
+    /// Returns the target that the command line names with `option`, or else the target of the file. If neither is
+    /// given, returns a robot that has every capability.
     ///
     /// # Errors
     /// Fails if there is no such target, or if its alphabet cannot be read or has errors.
@@ -111,7 +112,8 @@ impl Settings {
         Ok(target)
     }
 
-    /// Returns the name of the target that the command line gives with `option`, or else the name in the file.
+    /// Returns the name of the target that the command line gives with `option`, or else the name in the file. Returns
+    /// `None` if neither is given.
     #[must_use]
     pub fn name_of_target(&self, option: Option<&str>) -> Option<String> {
         let own = || self.text.target.as_ref().map(|own| self.target_name(&own.value));
@@ -133,7 +135,7 @@ impl Settings {
         })
     }
 
-    /// Returns the file of the safety rules that a run of `mdle` applies between plan and robot.
+    /// Returns the file of the safety rules that a run of `mdle` applies to the inputs before they reach the robot.
     #[must_use]
     pub fn safety(&self) -> Option<SafetyEntry> {
         let own = self.text.safety.as_ref()?;
@@ -142,8 +144,8 @@ impl Settings {
 
     /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the command
     /// line. The options apply to the target of the file: if the command line names a different target with `target`,
-    /// no options are returned. `known` returns the known worlds and options of a target; the run itself checks the
-    /// rest.
+    /// no options are returned. `known` returns the known worlds and options of a target; the run itself checks
+    /// everything else.
     ///
     /// # Errors
     /// Fails if there is no such world or option.
@@ -178,8 +180,8 @@ impl Settings {
         world.into_iter().chain(others).collect()
     }
 
-    /// Returns the option `--world`: a file of that name in the folder of the `mdle.toml`, or else a world that
-    /// the target knows.
+    /// Returns the option `--world`: its value is a file of that name in the folder of the `mdle.toml`, or else a world
+    /// that the target knows.
     fn world(&self, world: &Setting, worlds: &[&str]) -> Result<RunOption, InputError> {
         let (place, file) = (self.place(world.line), self.in_folder(&world.value));
         if !file.is_file() && world.value.contains(['.', '/']) {

@@ -1,4 +1,4 @@
-//! The robot for which plans are written: its alphabet, with the shared alphabets that it uses.
+//! Reads the robot for which plans are written: its alphabet, and the shared alphabets that the alphabet uses.
 
 use std::path::{Path, PathBuf};
 
@@ -11,14 +11,14 @@ use crate::read::LARGEST_PLAN;
 use crate::text::read_text;
 use crate::{FaultyFile, InputError, read};
 
-/// The robot against which plans are checked.
+/// The robot for which plans are checked.
 #[derive(Debug)]
 pub struct Target {
     /// Alphabet of the robot.
     pub alphabet: Alphabet,
     /// Folder of a third-party target; `None` for a target that is part of mdlec.
     pub folder: Option<PathBuf>,
-    /// The `mdle.toml` beside the plan, if there is one.
+    /// Path of the `mdle.toml` beside the plan; `None` if there is none.
     pub settings: Option<PathBuf>,
     /// Files from which the alphabet was read, so that messages can show them.
     pub(crate) sources: Vec<(String, String)>,
@@ -30,7 +30,7 @@ impl Target {
         self.sources.iter().map(|(_, text)| text.as_str())
     }
 
-    /// Returns only the alphabet's files, as the sources of messages.
+    /// Returns the alphabet's files, and no others, as the sources of messages.
     #[must_use]
     pub fn sources(&self) -> Sources {
         let mut sources = Sources::default();
@@ -47,8 +47,8 @@ impl Target {
         own.chain(self.settings.clone())
     }
 
-    /// Checks that the crate of a third-party target is bound to the target's alphabet; otherwise no plan can
-    /// be built for it.
+    /// Checks that the crate of a third-party target contains the Rust file for the target's current alphabet. Without
+    /// this file, no plan can be built for the target.
     ///
     /// # Errors
     /// Fails if the generated file `src/alphabet.rs` is missing or out of date.
@@ -81,8 +81,8 @@ pub fn out_of_date(file: &Path) -> String {
     format!("`{bound}` differs from the bindings of `{file}`\nhelp: `mdlec bind {file}` writes it again")
 }
 
-/// Reads the target that `option` names: a target that is part of mdlec, or the folder of a third-party target.
-/// Without a name, returns a robot with every capability.
+/// Reads the target that `option` names: a target that is part of mdlec, or the folder of a third-party target. If
+/// `option` is `None`, returns a robot with every capability.
 ///
 /// # Errors
 /// Fails if there is no such target, or if its alphabet cannot be read or has errors.

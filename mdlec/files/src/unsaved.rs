@@ -1,4 +1,4 @@
-//! Texts that are read instead of files: texts that an editor has not saved yet, or all files of a plan.
+//! Stores texts that are read instead of files: texts that an editor has not saved yet, or all files of a plan.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -23,15 +23,15 @@ impl Unsaved {
         Self { texts, are_all: true }
     }
 
-    /// Uses `text` instead of the file `path` from now on. A path whose folder does not exist has no effect,
-    /// since no plan can use it.
+    /// Uses `text` instead of the file `path` from now on. If the folder of the path does not exist, the call has no
+    /// effect, because no plan can use such a file.
     pub fn insert(&mut self, path: &Path, text: &str) {
         if let Ok(place) = place(path) {
             self.texts.insert(place, text.into());
         }
     }
 
-    /// Returns the text for this canonical path, if the editor has one.
+    /// Returns the text that replaces the file at this canonical path; `None` if there is no such text.
     pub(crate) fn text(&self, place: &Path) -> Option<&str> {
         self.texts.get(place).map(AsRef::as_ref)
     }
@@ -46,7 +46,8 @@ impl Unsaved {
     }
 }
 
-/// Returns a path without `.`. Each `..` that follows the name of a folder is removed together with this name.
+/// Returns a path without the components `.`. Each `..` that follows the name of a folder is removed together with this
+/// name.
 #[must_use]
 pub fn normal(path: &Path) -> PathBuf {
     let mut normal = PathBuf::new();
@@ -89,7 +90,7 @@ mod tests {
 
     const MAIN: &str = "use \"leg.mdle\"\n{ Main (bumper) Leg }\n";
 
-    /// Returns the codes of the diagnostics of `MAIN` in this folder.
+    /// Returns the codes of the diagnostics of the plan file `MAIN` in this folder.
     fn codes(folder: &Path, unsaved: &Unsaved) -> Vec<&'static str> {
         let target = target(None).unwrap();
         let mut input = plan(&folder.join("main.mdle"), MAIN.into(), &target).unwrap().with_unsaved(unsaved.clone());

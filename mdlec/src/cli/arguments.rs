@@ -154,13 +154,13 @@ pub(super) enum Command {
     Emulator(EmulatorArguments),
     /// Serve an editor as its language server
     ///
-    /// Speaks the Language Server Protocol on standard input and output: an editor starts it and ends it. The page
-    /// "Editors" of the book has the lines for VS Code, Neovim, Helix, Zed and Emacs.
+    /// Speaks the Language Server Protocol on standard input and output; the editor starts and ends the process. The
+    /// page "Editors" of the book has the lines for VS Code, Neovim, Helix, Zed and Emacs.
     Lsp,
     /// Serve an editor as its debugger
     ///
-    /// Speaks the Debug Adapter Protocol on standard input and output: an editor starts it and ends it. It runs a plan
-    /// on a script of interrupts, as `mdlec trace` does, forward and back.
+    /// Speaks the Debug Adapter Protocol on standard input and output; the editor starts and ends the process. Runs a
+    /// plan with a script of interrupts, as `mdlec trace` does, forwards and backwards.
     Dap,
     /// Remove everything that mdlec keeps in its cache
     ///

@@ -6,7 +6,7 @@ use mdle_compiler::rust;
 use mdle_files::read::{self, LARGEST_PLAN};
 use mdle_files::{bound, out_of_date};
 
-/// Writes `src/alphabet.rs` beside the alphabet, or reports if it is out of date.
+/// Writes `src/alphabet.rs` beside the alphabet or, with `--check`, reports that the file is out of date.
 pub(super) fn bind(options: &Bind) -> Result<(), CommandFailure> {
     let file = &options.alphabet;
     let alphabet = mdle_files::alphabet(file)?;

@@ -74,7 +74,7 @@ pub(super) fn build(options: &Build) -> Result<Option<BuiltExecutable>, CommandF
     Ok(None)
 }
 
-/// Returns the limit on the size of a plan that is printed in the form `kind` or built.
+/// Returns the check that a plan is not too large to be built, or to be printed in the form `kind`.
 fn limit(kind: EmitKind) -> Limit {
     match kind {
         EmitKind::Tree | EmitKind::Projected | EmitKind::Plan | EmitKind::Nondegenerate | EmitKind::Formal => {
@@ -87,7 +87,7 @@ fn limit(kind: EmitKind) -> Limit {
     }
 }
 
-/// Returns the plan's text in the form `kind`, and the files that were read.
+/// Returns the text of the plan in the form `kind`, and the paths of the files that were read.
 fn stage(options: &ExecutableArguments, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), CommandFailure> {
     let settings = Settings::beside(path)?;
     let target = settings.target(options.target.as_deref())?;

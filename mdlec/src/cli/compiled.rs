@@ -7,7 +7,7 @@ use mdle_files::{Input, InputError, Target, read_plan};
 
 use super::{CommandFailure, report};
 
-/// Compiles the plan `name`, or the only plan that no other plan uses, if it is within the limit; messages go to
+/// Compiles the plan `name`, or the only plan that no other plan uses, if the plan is within the limit; messages go to
 /// standard error.
 pub(super) fn compile_one(
     input: &mut Input,
@@ -41,7 +41,7 @@ pub(super) fn compile_judged<T>(
     Ok(input.only(judged)?)
 }
 
-/// Fails if no target is named, since Rust code is written for a particular robot.
+/// Fails if no target is named, because Rust code is written for a particular robot.
 pub(super) fn needs_target(is_named: bool) -> Result<(), CommandFailure> {
     if is_named { Ok(()) } else { Err(InputError::NoTarget.into()) }
 }

@@ -4,8 +4,8 @@ use mdle_debugger::ServeError;
 
 use super::CommandFailure;
 
-/// Serves an editor until it ends the session. The exit status is 1 if the client vanishes, and 2 if it breaks
-/// the protocol.
+/// Serves an editor until it ends the session. The exit status is 1 if the client closes the connection too early, and
+/// 2 if it violates the protocol.
 pub(super) fn dap() -> Result<(), CommandFailure> {
     mdle_debugger::serve().map_err(|error| match error {
         ServeError::Vanished => CommandFailure::of(1, error.to_string()),

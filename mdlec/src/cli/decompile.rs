@@ -11,7 +11,8 @@ use mdle_theory::theorem::{Machine, TheoremResult, as_printed, augment, decompil
 /// Maximum number of states for which the matrices of a machine are printed.
 const SHOWN: usize = 12;
 
-/// Prints the plan of a machine or, with `--as-printed`, whether the conditions as printed in the paper hold.
+/// Prints the plan of a machine. With `--as-printed`, reports whether the conditions hold in the form in which the
+/// paper prints them.
 pub(super) fn decompile(options: &Decompile) -> Result<(), CommandFailure> {
     let file = options.machine.display();
     let text = mdle_files::read_text(&options.machine, LARGEST_DATA)?;
@@ -67,8 +68,8 @@ fn print(file: &Path, plan: &str) -> Result<(), CommandFailure> {
     }
 }
 
-/// Returns a report on the conditions as printed in the paper: whether they hold for a machine, and how they differ
-/// from the exact conditions.
+/// Returns a report on the conditions in the form in which the paper prints them. The report says whether they hold for
+/// a machine, and how they differ from the exact conditions.
 fn printed(machine: &Machine, exactly: &TheoremResult) -> String {
     let mut text = String::new();
     if machine.states().len() <= SHOWN {

@@ -60,7 +60,7 @@ impl EmitKind {
 }
 
 impl Emit {
-    /// Parses the argument: a kind, which `=FILE` may follow.
+    /// Parses the argument, which is a kind that may be followed by `=FILE`.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let (kind, file) = match text.split_once('=') {
             Some((_, "")) => return Err("name a file after `=`, or leave `=` out".into()),

@@ -8,7 +8,7 @@ use super::progress::ProgressOutput;
 use super::{CommandFailure, EmulatorArguments};
 use crate::link::{self, Cache};
 
-/// Builds the emulator of a robot, and replaces this process by it.
+/// Builds a robot's emulator and replaces the current process with it.
 pub(super) fn emulator(options: &EmulatorArguments) -> Result<(), CommandFailure> {
     take_signals()?;
     let robot = &options.robot;

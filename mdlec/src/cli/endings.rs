@@ -19,8 +19,8 @@ pub(super) fn svg(file: &Path) -> Result<(), CommandFailure> {
     )))
 }
 
-/// Refuses the extension of a picture file for an executable or for a form of `plan`, since none of them is a picture
-/// file.
+/// Refuses the extension of a picture file for an executable or for a form of `plan`, because none of these is a
+/// picture file.
 pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(), CommandFailure> {
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !PICTURES.iter().any(|picture| ending.eq_ignore_ascii_case(picture)) {

@@ -24,8 +24,8 @@ pub(super) fn run(options: &RunArguments) -> Result<(), CommandFailure> {
     build(&options.executable, path, output, None)?.become_it(options.executable.target.as_deref(), &options.args)
 }
 
-/// Checks the `mdle.toml` beside a plan before the build: the options that it adds to a run with the arguments `args`
-/// must be valid, and it must not name safety rules, which an executable does not support.
+/// Checks the `mdle.toml` beside a plan before the build. The options that it adds to a run with the arguments `args`
+/// must be valid. It must not name safety rules, because executables do not support them.
 pub(super) fn settings_fit(options: &ExecutableArguments, args: &[String]) -> Result<(), CommandFailure> {
     // A scenario takes no options from an `mdle.toml`.
     let Some(path) = options.plan.as_ref().filter(|path| !scenario::is_scenario(path)) else { return Ok(()) };
@@ -44,7 +44,8 @@ pub(super) fn begin(options: &ExecutableArguments) -> Result<&Path, CommandFailu
     options.plan.as_deref().ok_or_else(|| CommandFailure::usage("no plan was given"))
 }
 
-/// Installs handlers for signals that end this process. They remove its child processes and unfinished files first.
+/// Installs handlers for the signals that end this process. The handlers first end its child processes and remove its
+/// unfinished files.
 pub(super) fn take_signals() -> Result<(), CommandFailure> {
     link::leave_nothing_behind(ProgressOutput::wipe)
         .map_err(|error| CommandFailure::usage(format!("this system does not let signals be caught: {error}")))
@@ -101,7 +102,7 @@ pub(super) fn build(
 
 impl BuiltExecutable {
     /// Replaces this process by the executable, with the options of `mdle.toml` before `args`. `target` is the target
-    /// on the command line.
+    /// that the command line names.
     pub(super) fn become_it(&self, target: Option<&str>, args: &[String]) -> Result<(), CommandFailure> {
         let program = if self.path.is_absolute() { self.path.clone() } else { Path::new(".").join(&self.path) };
         let options = self.settings.run_options(target, args, link::known)?;
@@ -113,8 +114,8 @@ impl BuiltExecutable {
 
 /// Fails if the executable `program` does not accept the option with this value.
 ///
-/// An executable checks its arguments in order and does nothing else before it answers `--version`, so this call only
-/// checks the option.
+/// The executable is called with the option and `--version`. It checks its arguments in order before it prints its
+/// version, and does nothing else, so this call only checks the option.
 fn must_fit(option: &RunOption, program: &Path) -> Result<(), CommandFailure> {
     let answer = Command::new(program).args(&option.arguments).arg("--version").stdin(Stdio::null()).output();
     // If the program cannot be started, replacing this process fails as well and reports the reason.

@@ -11,7 +11,7 @@ use mdle_compiler::plan::Nondegenerate;
 use mdle_theory::equations::{self, MatrixFiles};
 
 /// Prints the matrices, or writes them into a folder without overwriting any of `inputs`. Only small matrices are
-/// printed; files may contain ten million ones in total.
+/// printed. Files may contain at most ten million ones in total.
 pub(super) fn matrices(
     plan: &Nondegenerate,
     combined: bool,

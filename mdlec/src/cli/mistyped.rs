@@ -26,8 +26,8 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("emulator", &["emulate"]),
 ];
 
-/// Returns the error for a first argument that resembles a command and is not a file, which clap would take for a plan.
-/// Returns `None` for any other first argument.
+/// Returns the error for a first argument that resembles a command and is not a file. Without this function, clap would
+/// take such an argument for the file of a plan. Returns `None` for any other first argument.
 pub(super) fn command() -> Option<CommandFailure> {
     let cli = Cli::command();
     let word = words(&cli).into_iter().nth(1).and_then(|word| word.into_string().ok());
@@ -124,8 +124,8 @@ fn unexpected(answer: &clap::Error) -> Option<&str> {
     }
 }
 
-/// Replaces clap's tip that an unknown option can be passed as a value. The tip is wrong here, because no command of
-/// mdlec takes a value that looks like an option.
+/// Replaces clap's tip that an unknown option can be passed as a value. The tip is wrong here, because no option or
+/// argument of mdlec has a value that looks like an option.
 pub(super) fn with_tip(mut answer: clap::Error) -> clap::Error {
     let Some(given) = unexpected(&answer).filter(|given| given.starts_with('-')).map(str::to_owned) else {
         return answer;

@@ -55,7 +55,7 @@ struct CommandFailure {
 }
 
 impl From<InputError> for CommandFailure {
-    /// Converts an input error: exit status 1 for a plan with errors, and 2 for everything else.
+    /// Converts an input error to a failure. The exit status is 1 for a plan with errors, and 2 for all other errors.
     fn from(error: InputError) -> Self {
         let message = Some(error.to_string()).filter(|message| !message.is_empty());
         let (status, found) = match error.faulty_file() {
@@ -75,7 +75,7 @@ impl From<LinkError> for CommandFailure {
 }
 
 impl CommandFailure {
-    /// Returns the failure for wrong usage, or for a file that cannot be read or written: exit status 2.
+    /// Returns the failure for wrong usage, or for a file that cannot be read or written. The exit status is 2.
     fn usage(message: impl Into<String>) -> Self {
         Self::of(2, message)
     }
@@ -90,7 +90,7 @@ impl CommandFailure {
         Self { status, found: None, message: None }
     }
 
-    /// Failure for a plan with errors, which have been printed: exit status 1.
+    /// Failure for a plan with errors that have already been printed. The exit status is 1.
     const PLAN: Self = Self::silent(1);
 
     /// Prints the message, if there is one, and returns the exit status.
@@ -136,8 +136,8 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Returns the argument of `--color`. It is needed for help and for usage errors, for which clap returns no parsed
-/// arguments.
+/// Returns the argument of `--color`. This function is needed for help and for usage errors, because clap returns no
+/// parsed arguments for them.
 fn color_of_help() -> Color {
     let mut words = std::env::args().take_while(|word| word != "--").skip_while(|word| !word.starts_with("--color"));
     let value = words.next().and_then(|word| match word.split_once('=') {

@@ -60,9 +60,9 @@ fn fill(folder: &Path, name: &str) -> Result<(), CommandFailure> {
     bind::bind(&Bind { alphabet: folder.join("alphabet.mdle"), check: false })
 }
 
-/// Returns the text of a template's file for a robot with this name. The manifest is not part of mdlec's workspace, but
-/// has a workspace of its own, so that it works in any folder. It has no licence, which the author of the robot
-/// chooses.
+/// Returns the text of a template's file for a robot with this name. The package of the robot is not part of mdlec's
+/// workspace, but has a workspace of its own, so that it can be built in any folder. Its manifest names no licence,
+/// because the author of the robot chooses it.
 fn named(file: &str, text: &str, name: &str) -> String {
     let text = text.replace(NAME, name);
     if file != "Cargo.toml" {
@@ -75,7 +75,7 @@ fn named(file: &str, text: &str, name: &str) -> String {
     text.replace("{ workspace = true", &format!("{{ version{VERSION}"))
 }
 
-/// Fails if the name conflicts with a package, a file or a reserved word of `--target`.
+/// Fails if the name conflicts with a package, a file or a word that has a special meaning for `--target`.
 fn must_be_free(name: &str) -> Result<(), CommandFailure> {
     if is_taken(name) {
         return Err(CommandFailure::usage(format!(

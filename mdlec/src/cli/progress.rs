@@ -9,8 +9,8 @@ use mdle_runtime::Printable;
 use super::{CommandFailure, report};
 use crate::link::{self, BuildStep, Built, Cache, Package};
 
-/// Builds a package, shows the progress, and prints a note about the executable. `target` is the folder of a
-/// third-party target.
+/// Builds a package, shows the progress, and prints a note about the executable that was built. `target` is the folder
+/// of a third-party target.
 pub(super) fn build_package(
     package: &Package<'_>,
     output: &Path,
@@ -44,7 +44,8 @@ fn note_ignored(plan: &Path, target: Option<&Path>) {
     }
 }
 
-/// Progress output: a single line that is overwritten on a terminal, and otherwise a line for each new step.
+/// Shows the progress. On a terminal, this is a single line that is overwritten; otherwise it is a line for each new
+/// step.
 #[derive(Default)]
 pub(super) struct ProgressOutput {
     open: bool,

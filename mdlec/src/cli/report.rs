@@ -1,4 +1,4 @@
-//! Messages on standard error, and output on standard output.
+//! Prints messages on standard error, and output on standard output.
 
 use std::env;
 use std::ffi::OsString;
@@ -32,7 +32,7 @@ pub(super) fn is_json() -> bool {
 
 /// Prints diagnostics in order, followed by their number.
 ///
-/// Returns `true` if the plan may be used: no errors, and with `deny_warnings` no warnings.
+/// Returns `true` if the plan may be used: it has no errors and, if `deny_warnings` is `true`, no warnings.
 pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings: bool) -> bool {
     if is_json() {
         // Programs get all diagnostics; the number of diagnostics as text is limited.
@@ -82,7 +82,8 @@ pub(super) fn note(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{}", PrintableLines(message));
 }
 
-/// Prints text for people to standard output, with control characters made printable; a closed pipe is not an error.
+/// Prints text for people to standard output, with its control characters replaced by printable ones. A closed pipe is
+/// not an error.
 pub(super) fn print(text: &str) -> Result<(), CommandFailure> {
     print_exactly(&PrintableLines(text).to_string())
 }

@@ -1,5 +1,5 @@
-//! Scenarios of several robots, `mdlec SCENARIO.toml`. The executable contains all files of the scenario, and runs them
-//! as `mdle run SCENARIO.toml` does.
+//! Builds and checks scenarios of several robots (`mdlec SCENARIO.toml`). The executable of a scenario contains all
+//! files of the scenario, and runs them as `mdle run SCENARIO.toml` does.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

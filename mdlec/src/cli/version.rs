@@ -3,9 +3,8 @@
 
 use mdle_files::Target;
 
-/// Returns the version text. It contains a hash of `texts`, which are the texts of the plan and of the files that it
-/// uses; the name of the target; a hash of the target's alphabet and the shared alphabets; and the version of the
-/// compiler.
+/// Returns the version text. It contains a hash of `texts` (the texts of the plan and of the files that it uses), the
+/// name of the target, a hash of the target's alphabet and of the shared alphabets, and the version of the compiler.
 pub(super) fn version<'t>(texts: impl Iterator<Item = &'t [u8]>, target: &Target) -> String {
     format!(
         "text {}, target {}, alphabet {}, mdlec {}",

@@ -5,8 +5,8 @@ use std::ffi::OsString;
 
 use clap::{Arg, Command};
 
-/// Returns the words of this process's command line, with global options before the command moved after it. Without a
-/// command, a plan can follow such an option, so clap would refuse a command there.
+/// Returns the words of this process's command line, in which global options that stand before the command have been
+/// moved after it. Clap would refuse a command that follows such an option, because it expects a plan there.
 pub(super) fn words(cli: &Command) -> Vec<OsString> {
     ordered(env::args_os().collect(), cli)
 }

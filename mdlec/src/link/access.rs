@@ -1,5 +1,5 @@
-//! Access rights of the cache. Only its user has access, because mdlec runs the files in the cache and builds them into
-//! executables.
+//! Sets and checks the access rights of the cache. Only the user of the cache has access, because mdlec runs the files
+//! in the cache and builds them into executables.
 
 use std::fs::{self, DirBuilder, Metadata, Permissions};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, PermissionsExt};
@@ -28,8 +28,8 @@ pub(super) struct Private {
 /// Creates `folder`, or removes the permissions of other users if it exists.
 ///
 /// # Errors
-/// Fails if the folder, or one above it, belongs to another user who is not the superuser, or if others can
-/// write to a folder above it.
+/// Fails if the folder, or a folder above it, belongs to another user who is not the superuser. Also fails if others
+/// can write to a folder above it.
 pub(super) fn private(folder: &Path) -> Result<Private, LinkError> {
     let failed = |error| LinkError::cache(folder, error);
     DirBuilder::new().recursive(true).mode(OWN).create(folder).map_err(failed)?;

@@ -55,8 +55,8 @@ pub(super) fn fault(
     }
 }
 
-/// Returns the error for a linker that failed. If the executable of the package `plan` was linked, this is the linker
-/// for the machine `foreign`; otherwise it is the linker for this machine.
+/// Returns the error for a linker that failed. If the error occurred while the executable of the package `plan` was
+/// linked, this is the linker for the machine `foreign`. Otherwise it is the linker for this machine.
 fn linker(error: &Complaint, plan: &Path, foreign: Option<&str>, log: PathBuf) -> LinkError {
     // In other packages, only build scripts and procedural macros are linked, and these run on this machine.
     match foreign.filter(|_| error.manifest == plan) {
@@ -65,7 +65,7 @@ fn linker(error: &Complaint, plan: &Path, foreign: Option<&str>, log: PathBuf) -
     }
 }
 
-/// Returns the error for emitted text that does not compile.
+/// Returns the error for Rust code of mdlec that does not compile.
 fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     match target {
         TargetCrate::Builtin { .. } => LinkError::Emitted { log },
@@ -74,8 +74,8 @@ fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     }
 }
 
-/// Returns the error for a run in which cargo did not begin to compile, or in which a crate that mdlec did not emit
-/// does not compile.
+/// Returns the error for a run in which cargo did not begin to compile, or in which a crate does not compile that mdlec
+/// has not generated.
 fn others(
     job: &PackageBuild<'_>,
     run: &CargoResult,

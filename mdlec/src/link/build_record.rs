@@ -1,4 +1,5 @@
-//! Record of the last build of a plan: hashes of its package, its lock file and its executable.
+//! Keeps a record of the last build of a plan, which contains the hashes of its package, its lock file and its
+//! executable.
 //!
 //! Cargo compares only the times of files. Times do not show that a file was truncated or overwritten, and they are
 //! wrong after the clock was set back.

@@ -15,7 +15,7 @@ use etcetera::BaseStrategy;
 use super::access::{self, Private};
 use super::{BuildStep, LinkError};
 
-/// The cache, a folder that mdlec keeps between runs.
+/// The cache, which is a folder that mdlec keeps between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cache {
     folder: PathBuf,
@@ -78,8 +78,8 @@ impl Cache {
         self.folder.join("plans")
     }
 
-    /// Returns an empty folder for the temporary files of a build, so that the files of a killed compiler can
-    /// be removed.
+    /// Returns an empty folder for the temporary files of a build. Files that a killed compiler has left in it are
+    /// removed.
     pub(super) fn scratch(&self) -> Result<PathBuf, LinkError> {
         let folder = self.folder.join("tmp");
         remove(&folder)?;
@@ -87,7 +87,7 @@ impl Cache {
         Ok(folder)
     }
 
-    /// Waits until no other mdlec uses the cache, and locks it until the returned file is closed.
+    /// Waits until no other mdlec uses the cache, and then locks the cache until the returned file is closed.
     pub(super) fn lock(&self, progress: &mut dyn FnMut(BuildStep)) -> Result<File, LinkError> {
         let path = self.folder.join("lock");
         let failed = |error| LinkError::cache(&path, error);
@@ -108,8 +108,8 @@ impl Cache {
     }
 }
 
-/// Writes `contents` to `file` if they differ; returns `true` if it wrote. Another process that reads the file sees
-/// either the old or the new contents.
+/// Writes `contents` to `file` if the file has other contents; returns `true` if the file was written. Another process
+/// that reads the file sees either the old or the new contents.
 pub(super) fn write_if_changed(file: &Path, contents: &[u8]) -> Result<bool, LinkError> {
     if fs::read(file).is_ok_and(|found| found == contents) {
         return Ok(false);

@@ -66,7 +66,7 @@ pub(super) fn found(job: &PackageBuild<'_>, run: &CargoResult, target: &TargetCr
     (refused || spoilt).then_some(Damage::Libraries)
 }
 
-/// Returns `true` if a damaged library can be the cause of the error.
+/// Returns `true` if a damaged library may be the cause of the error.
 fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<'_>) -> bool {
     let says = |signs: &[&str]| signs.iter().any(|sign| complaint.text.contains(sign));
     // The sources that are part of mdlec are tested, so an error in them indicates damage. The code that mdlec emits
@@ -75,7 +75,8 @@ fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<
     complaint.is_error && !says(&LACKING) && (is_tested || says(&UNREADABLE) && !is_forgotten(complaint, target))
 }
 
-/// Returns `true` if the error is caused by a third-party crate that uses a crate missing from its dependencies.
+/// Returns `true` if the error is caused by a third-party crate that uses another crate without naming it among its
+/// dependencies.
 fn is_forgotten(complaint: &Complaint, target: &TargetCrate<'_>) -> bool {
     let TargetCrate::Path { folder, .. } = target else { return false };
     let is_own = folder.canonicalize().is_ok_and(|folder| complaint.manifest.starts_with(folder));

@@ -13,8 +13,8 @@ use super::seal::Seal;
 use super::toolchain::{self, cargo_home, output, unusable};
 use super::{BuildStep, Cache, LinkError, cleanup};
 
-/// Settings of the profile for cargo's `--config`, which neither a configuration file nor the environment can
-/// override. Executables rely on these settings.
+/// Settings of the build profile, passed to cargo by `--config`, so that neither a configuration file nor the
+/// environment can override them. Executables rely on these settings.
 const PROFILE: [&str; 13] = [
     // A panic in a driver has to reach the code that stops the robot.
     "profile.release.panic='unwind'",
@@ -98,11 +98,11 @@ impl PackageBuild<'_> {
         command
     }
 
-    /// Returns the flags of rustc. They make the executable static, with a fixed address, so that it needs no
-    /// relocation table, and they keep the paths of this machine out of it.
+    /// Returns the flags of rustc. They make the executable static and give it a fixed address, so that it needs no
+    /// relocation table. They also remove the paths of this machine from it.
     ///
-    /// The flags are equal for all plans, because cargo would compile everything again for other flags. The path of a
-    /// target outside the home folder is therefore not removed, and appears in the messages of panics.
+    /// The flags are equal for all plans, because cargo would compile everything again for other flags. Therefore they
+    /// do not remove the path of a target that is outside the home folder, and the messages of panics show this path.
     fn flags(&self) -> OsString {
         let mut flags = OsString::from("-Ctarget-feature=+crt-static\x1f-Crelocation-model=static");
         let home = env::home_dir();

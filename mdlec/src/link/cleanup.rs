@@ -75,7 +75,8 @@ impl Drop for UnfinishedEntry {
     }
 }
 
-/// Starts a child process in the group of `guard`; a signal ends it together with all its children.
+/// Starts a child process in the process group of `guard`. A signal that ends this process also ends the child process
+/// and all its children.
 pub(super) fn spawn(command: &mut Command, guard: &GroupGuard) -> io::Result<(Child, UnfinishedEntry)> {
     let mut unfinished = list();
     let group = guard.group();

@@ -18,12 +18,12 @@ const LOCK: &str = "lock";
 /// versions of mdlec left when they were killed.
 const OWN: [&str; 6] = ["cargo", "compiled", "compiled.new", "target", "tmp", "plans"];
 
-/// Removes the contents of the cache in `folder`, once no other mdlec uses it, and returns the number of bytes freed.
-/// The folder stays, with its lock file.
+/// Removes the contents of the cache in `folder`, as soon as no other mdlec uses it, and returns the number of bytes
+/// that were freed. The folder stays, with its lock file.
 ///
 /// # Errors
-/// Fails and changes nothing if the folder is not a cache: it contains a file that mdlec did not write, or no lock
-/// file. Also fails if the system refuses.
+/// Fails and changes nothing if the folder is not a cache because it contains a file that mdlec did not write, or no
+/// lock file. Also fails if the system refuses to remove a file.
 pub fn clear(folder: &Path, progress: &mut dyn FnMut(BuildStep)) -> Result<u64, LinkError> {
     // This check comes before any change, even a change of permissions.
     let Some(found) = contents(folder)? else { return Ok(0) };

@@ -1,10 +1,10 @@
-//! Reasons why no executable was built, in sentences that tell the user what to do.
+//! Defines the reasons why no executable was built, with messages that tell the user what to do.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Reason why no executable was built. The message is for the user of mdlec; a long message quotes cargo or
-/// rustc at its end.
+/// Reason why no executable was built. The message is for the user of mdlec; a long message ends with a quotation from
+/// cargo or rustc.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// The output path is a folder.
@@ -50,7 +50,7 @@ pub enum LinkError {
     CacheOfOther {
         /// Path of the folder.
         path: PathBuf,
-        /// User identifier of the owner.
+        /// Numeric user identifier of the owner.
         owner: u32,
     },
     /// Others can write to a folder above the cache.
@@ -59,7 +59,7 @@ pub enum LinkError {
          name another folder with the variable MDLEC_CACHE"
     )]
     CacheOpen(PathBuf),
-    /// The folder to be emptied is not a cache of mdlec.
+    /// The folder that should be emptied is not a cache of mdlec.
     #[error("`{path}` is not a cache of mdlec: {why}; nothing was removed")]
     NotACache {
         /// Path of the folder.
@@ -82,9 +82,9 @@ pub enum LinkError {
     /// Rust is too old.
     #[error("mdlec needs Rust {needed} or newer to build an executable, and this is {found}: run `rustup update`")]
     OldRust {
-        /// Oldest Rust version that is sufficient.
+        /// Minimum version of Rust.
         needed: &'static str,
-        /// Rust version that is installed.
+        /// Installed version of Rust.
         found: String,
     },
     /// rustc does not know the machine.
@@ -214,7 +214,7 @@ pub enum LinkError {
         /// File with the output of cargo and rustc.
         log: PathBuf,
     },
-    /// Rust that mdlec emitted does not compile.
+    /// Rust code that mdlec has generated does not compile.
     #[error("internal error: mdlec made Rust that does not compile; please report it with the plan and `{log}`")]
     Emitted {
         /// File with the output of cargo and rustc.
@@ -289,8 +289,8 @@ impl LinkError {
     }
 }
 
-/// Returns `true` if the error means that the disk is full, or that a quota or the process's limit on file sizes is
-/// reached.
+/// Returns `true` if the error means that the disk is full, or that a quota or the limit on the size of files of this
+/// process has been reached.
 fn is_full(error: &io::Error) -> bool {
     use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
     matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)

@@ -1,4 +1,5 @@
-//! Kills a running cargo when its mdlec was killed; it would otherwise delay the next build until it finishes.
+//! Kills a running cargo if the mdlec that started it has been killed. Otherwise this cargo would delay the next build
+//! until it finishes.
 
 use std::io;
 use std::os::unix::process::CommandExt;
@@ -8,8 +9,8 @@ use rustix::process::Pid;
 
 const SHELL: &str = "/bin/sh";
 
-/// Script of the guarding shell. Its standard input is closed when this process ends for any reason, and the shell then
-/// kills its process group. The shell ignores the signals that usually end a process group.
+/// Script of the shell that guards a process group. Its standard input is closed when this process ends for any reason,
+/// and the shell then kills its process group. The shell ignores the signals that usually end a process group.
 const PROGRAM: &str = "trap '' HUP INT QUIT TERM; read line; kill -KILL 0";
 
 /// A shell that leads a process group. It kills the group if this process ends before the guard is dropped.

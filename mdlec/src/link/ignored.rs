@@ -1,4 +1,4 @@
-//! Finds configuration files of cargo and rustup that builds ignore, because they are not in cargo's home.
+//! Finds configuration files of cargo and rustup that builds ignore because they are not in cargo's home.
 
 use std::path::{Path, PathBuf};
 use std::{fs, path};

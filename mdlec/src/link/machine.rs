@@ -1,5 +1,5 @@
-//! The machine for which an executable is built: this machine, or another machine. For another machine, rustc needs
-//! only its standard library.
+//! The machine for which an executable is built: this machine, or another machine. To build for another machine, rustc
+//! needs only the standard library for that machine.
 
 use std::fs;
 use std::path::Path;
@@ -35,7 +35,7 @@ impl BuildMachine {
         Self { triple: triple.to_owned(), is_foreign: false }
     }
 
-    /// Returns the machine `name`, a target triple or a short name; for `None`, the `host`.
+    /// Returns the machine `name`, which is a target triple or a short name; returns the `host` if `name` is `None`.
     ///
     /// # Errors
     /// Fails if rustc does not know the machine, if it does not run Linux, or if its standard library is not installed.
@@ -68,10 +68,10 @@ impl BuildMachine {
         }
     }
 
-    /// Returns the environment variable that names the linker to cargo, with its value, if rustc's own linker suffices.
-    /// It suffices for the C library musl, for which rustc comes with the object files at the start and the end of a
-    /// static executable. Returns `None` if the configuration in `cargo_home` names a linker, which the variable would
-    /// override.
+    /// Returns the environment variable that names the linker to cargo, with its value, if rustc's own linker is
+    /// sufficient. It is sufficient for the C library musl, because rustc contains the object files that musl needs at
+    /// the start and the end of a static executable. Returns `None` if the configuration in `cargo_home` names a
+    /// linker, which the variable would override.
     pub(super) fn linker(&self, cargo_home: Option<&Path>) -> Option<(String, &'static str)> {
         let is_configured = || cargo_home.is_some_and(|home| names_linker(home, &self.triple));
         let own = self.is_foreign && self.triple.contains("-linux-musl") && !is_configured();

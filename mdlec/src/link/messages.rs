@@ -30,13 +30,13 @@ pub(super) struct CargoResult {
     pub(super) status: ExitStatus,
     /// `true` if cargo was allowed to use the network.
     pub(super) online: bool,
-    /// `true` if cargo compiled a package or found a compiled package, or if rustc reported a message.
+    /// `true` if cargo has compiled a package or found one already compiled, or if rustc has reported a message.
     pub(super) began: bool,
     /// `true` if cargo used at least one crate that an earlier run had compiled.
     pub(super) reused: bool,
     /// Executable of the plan; `None` if cargo reported none.
     pub(super) executable: Option<CachedExecutable>,
-    /// Messages of rustc, warnings included, in order.
+    /// Messages of rustc, including warnings, in order.
     pub(super) complaints: Vec<Complaint>,
     /// Standard error of cargo.
     pub(super) stderr: String,
@@ -74,8 +74,8 @@ impl CargoResult {
         self.status.signal() == Some(SIGXFSZ) || FULL.iter().any(|sign| text.contains(sign))
     }
 
-    /// Returns `true` if cargo itself panicked. Panics of rustc do not count. A panic in a build script does not begin
-    /// a line, because cargo indents the output of build scripts.
+    /// Returns `true` if cargo itself panicked. Panics of rustc are ignored. Panics in build scripts are ignored as
+    /// well: they do not begin a line, because cargo indents the output of build scripts.
     pub(super) fn is_cargo_broken(&self) -> bool {
         let is_panic = |line: &str| line.starts_with("thread '") && line.contains("panicked at");
         !self.status.success() && self.stderr.lines().any(|line| is_panic(line) && !line.starts_with("thread 'rustc'"))
@@ -98,7 +98,8 @@ enum CargoLine {
 }
 
 /// Follows a run of cargo to its end. `online` is `true` if cargo may use the network, and `plan` is the plan's
-/// manifest. Each compiled file is recorded in `seal` at once, so that it is kept if the build is stopped.
+/// manifest. Each compiled file is recorded in `seal` immediately, so that it can be used again even if the build is
+/// stopped.
 pub(super) fn follow(
     mut child: Child,
     online: bool,
@@ -142,7 +143,7 @@ pub(super) fn follow(
     Ok(CargoResult { status, online, began, reused, executable, complaints, stderr })
 }
 
-/// Passes each line to `take`, until there are no more lines, reading fails, or `take` returns `false`.
+/// Passes each line to `take`, until there are no more lines, until reading fails, or until `take` returns `false`.
 fn each_line(lines: Option<impl Read>, mut take: impl FnMut(&[u8]) -> bool) {
     for line in lines.map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
         // After a read error, the lines read so far are sufficient for an error message.
@@ -153,7 +154,7 @@ fn each_line(lines: Option<impl Read>, mut take: impl FnMut(&[u8]) -> bool) {
     }
 }
 
-/// The output of cargo read so far.
+/// The output of cargo that has been read so far.
 struct CargoOutput<'a> {
     plan: &'a Path,
     seal: &'a mut Seal,

@@ -1,5 +1,5 @@
-//! Builds a static executable from emitted Rust, or from the files of a scenario: writes a cargo package and runs
-//! cargo.
+//! Builds a static executable from generated Rust code or from the files of a scenario. For this, it writes a cargo
+//! package and runs cargo.
 //!
 //! All files are in the [`Cache`]. The sources of executables are part of mdlec and are unpacked there once. An
 //! installed mdlec therefore needs no checkout and, once cargo has fetched the libraries, no network:
@@ -70,7 +70,7 @@ use sources::SourcesCopy;
 use target::Dependencies;
 use toolchain::Toolchain;
 
-/// A plan as Rust code, or a scenario as its files, with the data for its executable.
+/// A plan as Rust code or a scenario as its files, with the data that its executable needs.
 #[derive(Debug, Clone, Copy)]
 pub struct Package<'a> {
     /// Name of the plan or of the scenario, which the executable shows.
@@ -81,9 +81,9 @@ pub struct Package<'a> {
     pub plan_file: &'a Path,
     /// Files that were read; the executable must not overwrite them.
     pub inputs: &'a [PathBuf],
-    /// Item of the emitted text that the executable runs.
+    /// Item of the generated Rust code that the executable runs.
     pub entry: Entry<'a>,
-    /// Emitted text, without inner attributes.
+    /// The generated Rust code, without inner attributes.
     pub rust: &'a str,
     /// Crate of the robot.
     pub target: &'a TargetCrate<'a>,
@@ -91,7 +91,7 @@ pub struct Package<'a> {
     pub machine: Option<&'a str>,
 }
 
-/// Item of an emitted text that an executable runs.
+/// Item of generated Rust code that an executable runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Entry<'a> {
     /// Type that implements a plan.
@@ -112,9 +112,9 @@ pub struct Built {
 /// Builds the executable of `package` and writes it to `output`, completely or not at all.
 ///
 /// # Errors
-/// Fails if `output` cannot be written, which is checked before the build; if the target's crate does not
-/// compile; if this machine lacks something that a build, or a build for `package.machine`, needs; or if mdlec
-/// emitted invalid Rust.
+/// Fails if `output` cannot be written, which is checked before the build; if the target's crate does not compile; if
+/// this machine lacks something that the build for `package.machine` needs; or if mdlec has generated invalid Rust
+/// code.
 pub fn build(
     cache: &Cache,
     package: &Package<'_>,
@@ -146,7 +146,7 @@ pub fn build(
 pub struct Emulator {
     /// Path of the executable.
     pub path: PathBuf,
-    /// Lock that keeps other builds from overwriting the executable. It is released when this process becomes the
+    /// Lock that prevents other builds from overwriting the executable. It is released when this process becomes the
     /// emulator.
     _locked: File,
 }
@@ -168,7 +168,7 @@ pub fn emulator(cache: &Cache, robot: &str, progress: &mut dyn FnMut(BuildStep))
     Ok(Emulator { path: executable.path, _locked: locked })
 }
 
-/// Builds the executable of a package in the cache.
+/// Builds the executable of a package; the executable remains in the cache.
 fn make(
     job: &PackageBuild<'_>,
     target: &TargetCrate<'_>,

@@ -1,4 +1,4 @@
-//! The output file, which is checked before the build and written in one step after it.
+//! Checks the output file before the build, and writes it in one step after the build.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -30,8 +30,8 @@ pub fn write_whole(output: &Path, bytes: &[u8], inputs: &[PathBuf]) -> Result<()
     }
 }
 
-/// Refuses an `output` that is the same file as one of `inputs`, even under another path or as a link, because writing
-/// would destroy the input.
+/// Refuses an `output` that is the same file as one of `inputs`, even if its path differs or it is a link, because
+/// writing would destroy the input.
 ///
 /// # Errors
 /// Fails with [`LinkError::OutputIsInput`].
@@ -77,7 +77,7 @@ impl OutputFile {
         Ok(destination)
     }
 
-    /// Copies `executable` to the destination, with its permissions; returns the size in bytes.
+    /// Copies the file `executable` to the destination, including its permissions; returns the size in bytes.
     pub(super) fn copy(&self, executable: &Path) -> Result<u64, LinkError> {
         self.put(|new| {
             let mut executable = File::open(executable)?;
@@ -86,7 +86,7 @@ impl OutputFile {
         })
     }
 
-    /// Creates a file next to the destination, fills it with `write`, and renames it to the destination.
+    /// Creates a file next to the destination, lets `write` fill it, and renames it to the destination.
     fn put<T>(&self, write: impl FnOnce(&mut File) -> io::Result<T>) -> Result<T, LinkError> {
         let new = self.beside();
         let refused = |error| LinkError::output(&self.shown, error);
@@ -99,7 +99,7 @@ impl OutputFile {
         })
     }
 
-    /// Returns a new file name in the same folder.
+    /// Returns the path of a file that does not exist yet, in the same folder.
     fn beside(&self) -> PathBuf {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let mut name = OsString::from(".");

@@ -1,4 +1,4 @@
-//! Writes the cargo package of a plan's emitted Rust.
+//! Writes the cargo package for the Rust code that was generated from a plan.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -25,7 +25,7 @@ pub(super) fn write(
 }
 
 /// Returns the text that the executable prints for `--version` after the plan's name. If two builds differ although
-/// this text is equal, then the crate of a third-party target or the path of the cache differs.
+/// this text is equal, the reason is the crate of a third-party target or the path of the cache.
 fn version(package: &Package<'_>, dependencies: &Dependencies, toolchain: &Toolchain) -> String {
     let code = [package.rust, sources::hash(), &dependencies.lock].join("\0");
     format!("({}, code {}, rustc {})", package.version, &hash(code.as_bytes())[..12], toolchain.release)
@@ -80,8 +80,8 @@ fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), 
     Ok(())
 }
 
-/// Returns a readable package name that is unique for the emitted text, the target and the machine. All executables are
-/// built in one folder, and their bytes depend on the name.
+/// Returns a readable package name that is unique for the generated Rust code, the target and the machine. All
+/// executables are built in one folder, and their bytes depend on the name.
 fn name(package: &Package<'_>, main: &str, target: &str, machine: &str) -> String {
     let mut hasher = blake3::Hasher::new();
     for part in [main, package.rust, target, machine] {
@@ -133,7 +133,7 @@ fn main(package: &Package<'_>, version: &str) -> String {
     )
 }
 
-/// Returns a text as a TOML string; JSON's escapes are valid in TOML.
+/// Returns a text as a TOML string. The escape sequences are those of JSON, which are valid in TOML.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

@@ -1,4 +1,4 @@
-//! The folder of a plan's cargo package.
+//! Represents the folder of a plan's cargo package.
 
 use std::ffi::OsStr;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use super::LinkError;
 use super::cache::write_if_changed;
 
-/// A plan's package that has been written.
+/// A plan's package whose files have been written.
 #[derive(Debug)]
 pub(super) struct PlanPackage {
     /// Folder of the package; package and executable have the same name.

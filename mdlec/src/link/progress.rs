@@ -1,4 +1,4 @@
-//! Progress of a build, for display.
+//! Represents the progress of a build, so that it can be shown.
 
 use std::fmt;
 
@@ -14,14 +14,15 @@ pub enum BuildStep {
     Fetching,
     /// The libraries in the cache are damaged or were replaced, so all of them are compiled again.
     Mending,
-    /// Compiled files in the cache differ from what cargo wrote, and are compiled again.
+    /// Compiled files in the cache differ from those that cargo wrote, and are compiled again.
     Discarding,
-    /// Number of crates compiled so far, from 1; the plan itself does not count.
+    /// Number of crates compiled so far, counted from 1 and without the plan itself.
     Compiling(usize),
 }
 
 impl BuildStep {
-    /// Returns `true` for the first report of a step, and `false` for further reports of the step with a higher number.
+    /// Returns `true` for the first report of a step. Returns `false` for later reports of the same step, which contain
+    /// a higher number.
     #[must_use]
     pub fn is_first(&self) -> bool {
         match self {

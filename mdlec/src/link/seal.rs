@@ -4,8 +4,8 @@
 //! Cargo compares only the times of files. This module keeps a list of all compiled files with the hashes of their
 //! contents. Before cargo runs, each file that is not listed or does not match its hash is removed, so that cargo
 //! compiles it again. The list reveals damage, and files that other users added while they had access to the folder. It
-//! does not stop an attacker who can write to the cache, because the list is in the cache; the permissions of the cache
-//! prevent this.
+//! does not stop an attacker who can write to the cache, because the list itself is in the cache. The permissions of
+//! the cache prevent others from writing to it.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -61,8 +61,8 @@ impl Seal {
         Ok(seal)
     }
 
-    /// Records the hashes of `files` in the list. If `fresh` is `true`, cargo has found the files already compiled;
-    /// files that are listed then keep their hashes.
+    /// Records the hashes of `files` in the list. If `fresh` is `true`, cargo has found the files already compiled. In
+    /// this case, files that are already listed keep their hashes.
     pub(super) fn add(&mut self, files: &[PathBuf], fresh: bool) {
         let new = files.iter().filter(|file| !fresh || self.listed(file).is_none());
         let lines: Vec<_> = new.filter_map(|file| Some((self.name(file)?.to_owned(), hash_of(file)?))).collect();
@@ -76,8 +76,8 @@ impl Seal {
         self.hashes.extend(lines);
     }
 
-    /// Records the files in the folder of a build script in the list: the script under both of its names, or
-    /// its output.
+    /// Records in the list the files in the folder of a build script: the script under both of its names, or its
+    /// output.
     pub(super) fn add_script(&mut self, inside: &Path, fresh: bool) {
         let mut files = Vec::new();
         // A file that cannot be read is compiled again in the next build.
@@ -114,7 +114,7 @@ impl Seal {
         self.hashes.get(self.name(file)?)
     }
 
-    /// Returns the name of a file in the list; `None` if the list cannot contain the file.
+    /// Returns the name of a file in the list; `None` if the file cannot be in the list.
     fn name<'f>(&self, file: &'f Path) -> Option<&'f str> {
         file.strip_prefix(&self.target).ok()?.to_str().filter(|name| !name.contains('\n'))
     }
@@ -151,8 +151,8 @@ fn taken(folder: &Path, all: bool, files: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns `true` for a library, a procedural macro, a build script under both of its names, and its instructions to
-/// cargo.
+/// Returns `true` for a library, for a procedural macro, for a build script under either of its names, and for the
+/// output of a build script with its instructions to cargo.
 fn is_taken(path: &Path, name: &OsStr) -> bool {
     let extension = path.extension().and_then(OsStr::to_str);
     let is_library = extension.is_some_and(|extension| matches!(extension, "rlib" | "rmeta" | "so" | "a"));
@@ -170,7 +170,7 @@ mod tests {
     use super::super::tests::cache;
     use super::{BuildStep, Seal};
 
-    /// Writes files like those of cargo, and records all of them in the list.
+    /// Creates a cache with files such as cargo writes, and records all of them in the list.
     fn sealed(test: &str) -> (Cache, [PathBuf; 4]) {
         let cache = cache(test);
         let names = ["deps/liba-1.rlib", "deps/libb-2.so", "build/c-3/build-script-build", "build/c-4/output"];

@@ -1,4 +1,4 @@
-//! The sources of executables, as packed into mdlec, and their copy in the cache.
+//! Manages the sources of executables: the files that are packed into mdlec, and their copy in the cache.
 
 use std::fs::{self, DirEntry, File};
 use std::io;
@@ -23,7 +23,7 @@ const PREFIX: &str = "src-";
 /// Time after which the unpacked sources of an unused version are removed.
 const FORGOTTEN: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
-/// Name of the lock file, with the versions of dependencies with which mdlec was tested.
+/// Name of the lock file, which contains the versions of the dependencies with which mdlec was tested.
 pub(super) const LOCK: &str = "Cargo.lock";
 
 /// Returns the folder and package name of a built-in target, given its name for `--target`.
@@ -86,7 +86,7 @@ pub(super) struct SourcesCopy {
 impl SourcesCopy {
     /// Writes the files that are missing in the cache, and those that differ from the packed files.
     ///
-    /// Unchanged files keep their times, by which cargo recognizes what it has built. The cache must be locked.
+    /// Unchanged files keep their times, by which cargo recognizes what it has already built. The cache must be locked.
     pub(super) fn unpack(cache: &Cache) -> Result<Self, LinkError> {
         let folder = cache.folder().join(format!("{PREFIX}{}-{}", env!("CARGO_PKG_VERSION"), embedded::HASH));
         if !folder.exists() {
@@ -118,8 +118,8 @@ pub(super) fn is_folder(name: &str) -> bool {
     })
 }
 
-/// Removes the sources of versions that have not been used for a long time, with all build results: most of
-/// these belong to old versions, and a new version has to compile everything anyway.
+/// Removes the sources of versions that have not been used for a long time. If there are any, also removes all build
+/// results: most of these belong to old versions, and a new version has to compile everything anyway.
 fn forget_old_versions(cache: &Cache) -> Result<(), LinkError> {
     let is_old = |found: &DirEntry| {
         let used = found.metadata().and_then(|found| found.modified()).ok();

@@ -1,8 +1,9 @@
 //! The crate of a robot, and the packages on which a plan for the robot depends.
 //!
-//! A plan and its target must use the same `mdle-runtime`, since Rust treats a type in two packages as two types. The
-//! path dependencies of a third-party target are therefore used for the plan as well. Its dependencies by version or
-//! from git are replaced, for the plan and for the target, by the sources that are part of mdlec.
+//! A plan and its target must use the same package `mdle-runtime`, because Rust treats the same type in two packages as
+//! two types. The path dependencies of a third-party target are therefore used for the plan as well. Dependencies of
+//! the target that are named by version or come from git are replaced, for the plan and for the target, by the sources
+//! that are part of mdlec.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -13,7 +14,8 @@ use serde::Deserialize;
 use super::sources::{self, SHARED, SourcesCopy};
 use super::{LinkError, toolchain};
 
-/// Crate of a robot, which implements `mdle_host::Target` for a type that its root exports as `Target`.
+/// Crate of a robot. The root of the crate exports a type as `Target`, for which the crate implements
+/// `mdle_host::Target`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TargetCrate<'a> {
     /// A target that is part of mdlec.
@@ -41,8 +43,8 @@ impl<'a> TargetCrate<'a> {
         }
     }
 
-    /// Fails if `output` is a file in the folder of a third-party crate, unless it is an executable: users build plans
-    /// in that folder, and executables may be overwritten.
+    /// Fails if `output` is a file in the folder of a third-party crate, unless it is an executable. Executables may be
+    /// overwritten, because users build plans in that folder.
     pub(super) fn must_not_lose(&self, output: &Path) -> Result<(), LinkError> {
         let Self::Path { folder, .. } = self else { return Ok(()) };
         let is_inside = output.canonicalize().is_ok_and(|output| {
@@ -63,12 +65,12 @@ fn is_executable(file: &Path) -> bool {
 pub(super) struct Dependencies {
     /// Names of packages, with their folders.
     pub(super) packages: Vec<(String, PathBuf)>,
-    /// Packages of the target that are replaced, each as the source that `[patch]` names, the name of the package, and
-    /// the folder to use instead.
+    /// Packages of the target that are replaced. Each entry contains the source that `[patch]` names, the name of the
+    /// package, and the folder to use instead.
     pub(super) patches: Vec<(String, String, PathBuf)>,
     /// Initial lock file of the package.
     pub(super) lock: String,
-    /// Text that distinguishes this target from others.
+    /// Text that distinguishes this target from all others.
     pub(super) identity: String,
     /// Folder of mdlec's own sources; a compile error in them is a bug in mdlec.
     pub(super) ours: PathBuf,
@@ -127,7 +129,7 @@ pub(super) fn emulator_dependencies(robot: &str, sources: &SourcesCopy) -> Resul
     })
 }
 
-/// Returns the dependencies of a plan for a third-party target, as its manifest selects them.
+/// Returns the dependencies of a plan for a third-party target, which its manifest selects.
 fn by_path(folder: &Path, crate_name: &str, sources: &SourcesCopy) -> Result<Dependencies, LinkError> {
     let manifest = folder.join("Cargo.toml").canonicalize().map_err(|_| LinkError::NotACrate(folder.to_owned()))?;
     let metadata = read(&manifest, crate_name)?;
@@ -164,7 +166,7 @@ fn by_path(folder: &Path, crate_name: &str, sources: &SourcesCopy) -> Result<Dep
     })
 }
 
-/// Runs `cargo metadata` for the package at `manifest`, with the settings of its workspace filled in.
+/// Runs `cargo metadata` for the package at `manifest`, including the settings that come from its workspace.
 fn read(manifest: &Path, crate_name: &str) -> Result<Metadata, LinkError> {
     let mut command = toolchain::command("cargo");
     command

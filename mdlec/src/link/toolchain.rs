@@ -10,8 +10,8 @@ use super::LinkError;
 /// Oldest Rust version that compiles the packed sources.
 const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
 
-/// Prefixes of environment variables that cargo may read, because they are the user's choice: cargo's folders, its
-/// registries, the network, and its use of the machine. All other variables of cargo and rustc are removed, because
+/// Prefixes of environment variables that cargo may read, because the user chooses them. They concern cargo's folders,
+/// its registries, the network, and the number of jobs. All other variables of cargo and rustc are removed, because
 /// they could change builds, or make cargo build everything again.
 const KEPT: [&str; 6] =
     ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_REGISTRY_", "CARGO_BUILD_JOBS"];
@@ -81,13 +81,13 @@ pub(super) fn cargo_home() -> Option<PathBuf> {
     absolute("CARGO_HOME").or_else(|| Some(env::home_dir()?.join(".cargo")))
 }
 
-/// Runs `command` to its end. `tool` is the name of its program, for errors.
+/// Runs `command` to its end. `tool` is the name of the program in error messages.
 pub(super) fn output(mut command: Command, tool: &'static str) -> Result<Output, LinkError> {
     command.output().map_err(|error| unusable(tool, &error))
 }
 
-/// Returns `true` if this variable could change the results of cargo or rustc. `RUSTUP_TOOLCHAIN` is not
-/// included, since users choose their Rust version with it.
+/// Returns `true` if this variable could change the results of cargo or rustc. Returns `false` for `RUSTUP_TOOLCHAIN`,
+/// because users choose their Rust version with it.
 fn is_about_builds(name: &OsStr) -> bool {
     let Some(name) = name.to_str() else { return false };
     let own = name == "CARGO" || name.starts_with("CARGO_") || name.starts_with("__CARGO_");

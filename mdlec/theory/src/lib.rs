@@ -1,6 +1,6 @@
-//! The paper's theory of plans: Theorem 1 in both directions, and the equations of transition matrices.
+//! Implements the theory of plans in the paper: Theorem 1 in both directions, and the equations of transition matrices.
 //!
-//! No stage of the compiler uses this crate, only the commands that print its results. It does no I/O.
+//! Only the commands that print its results use this crate; no stage of the compiler does. It does no I/O.
 
 pub mod equations;
 #[cfg(test)]

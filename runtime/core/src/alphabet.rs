@@ -21,16 +21,16 @@ pub trait Alphabet {
     type Signal: Signal<Self::Output>;
     /// A law of the alphabet with its arguments.
     type Control: Control<Self::Output, Law = Self::Law>;
-    /// A running law of the alphabet; a law that has no completion never completes.
+    /// A running law of the alphabet. A law without a completion condition never completes.
     type Law: Law<Self::Output, Input = Self::Input> + Completes<Self::Output>;
 
     /// Name of the target, as in `--target`.
     const NAME: &'static str;
-    /// Hash of the alphabet's text; a plan that was compiled for another alphabet is rejected.
+    /// Hash of the alphabet's text. A plan that was compiled for an alphabet with another hash is rejected.
     const HASH: u64;
-    /// Capabilities of the robot, in the alphabet's words, such as `sonar[16]`.
+    /// Capabilities of the robot, spelled as in the alphabet, such as `sonar[16]`.
     const CAPABILITIES: &'static [&'static str];
-    /// Ranges of the parameters that the alphabet limits.
+    /// Ranges of the parameters for which the alphabet declares a range.
     const LIMITS: &'static [Limit];
 
     /// Returns the interrupt with this name and these arguments; `None` if the alphabet has no such signature.
@@ -56,7 +56,7 @@ pub struct Limit {
     pub most: f64,
 }
 
-/// An argument of a quark, of the kind that the alphabet declares.
+/// An argument of a quark. Each variant is a kind of argument that an alphabet can declare.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Argument<'a> {
     /// A `length`.
@@ -86,7 +86,7 @@ pub enum Argument<'a> {
 }
 
 impl<const N: usize> Bits<N> {
-    /// Returns the bits if their number is `N`.
+    /// Returns the bits if there are exactly `N`; `None` otherwise.
     #[must_use]
     pub const fn from_slice(bits: &[bool]) -> Option<Self> {
         match bits.first_chunk() {
@@ -100,9 +100,9 @@ impl<const N: usize> Bits<N> {
 /// which `mdlec bind` writes.
 ///
 /// `Output` and `Input` of the robot, and `NAME` and `HASH` of its alphabet, must be in scope. A capability is followed
-/// by the trait that `Output` must implement, if there is one. Limits are in SI units. A quark is declared by its name,
-/// its type, and a constant function that creates the quark from its arguments, or returns `None` for arguments of
-/// another signature.
+/// by the trait that `Output` must implement, if there is one. Limits are in SI units. Each quark is declared by its
+/// name, its type, and a constant function. The function creates the quark from its arguments, and returns `None` if
+/// the arguments fit another signature.
 #[macro_export]
 macro_rules! alphabet {
     (
@@ -163,7 +163,7 @@ macro_rules! alphabet {
             $(#[doc = concat!("`", $control_name, "`.")] $control($control),)*
         }
 
-        /// Any running law of this robot. One runs at a time, so no allocator is needed.
+        /// Any running law of this robot. Only one law runs at a time, so no allocator is needed.
         #[derive(Debug)]
         pub enum AnyLaw {
             $(#[doc = concat!("`", $control_name, "`.")] $control(<$control as $crate::Control<Output>>::Law),)*

@@ -5,15 +5,16 @@ use crate::{
     Links, Meters, Nanos, Output, Peer, Pings, Pose, PublishedNumber, Radians, Setpoint, SonarId, Twist, Volts,
 };
 
-/// `odometry`: the robot measures its pose and its velocities, in coordinates that stay fixed while it is switched on.
+/// `odometry`: the robot measures its pose and its velocities, in coordinates that stay fixed until the robot is
+/// switched off.
 pub trait Odometry: Output {
     /// Returns the pose.
     fn pose(&self) -> Pose;
     /// Returns the measured velocities.
     fn velocity(&self) -> Twist;
-    /// Returns the angle by which heading drift makes walls deviate from the axes of a frame, one of which has the
-    /// direction `axis`. Returns 0 unless the robot has a better estimate than its odometry, for example from a
-    /// [`crate::Compass`].
+    /// Returns the angle between the walls and the axes of a frame that drift of the heading has caused; `axis` is the
+    /// direction of one of these axes. Returns 0 unless the robot has a better estimate than its odometry, for example
+    /// from a [`crate::Compass`].
     fn drift(&self, _axis: Radians) -> Radians {
         Radians(0.0)
     }
@@ -46,20 +47,20 @@ pub trait DiffDrive: Output {
     }
 }
 
-/// Steering gains of the laws (the factor `k` of each law): turn rate per remaining error (paper, section IV-A).
+/// Steering gains of the laws: the factor `k` between the remaining error and the turn rate (paper, section IV-A).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steering {
-    /// `rotate`, `turn` and `path`: in rad/s for each radian still to turn.
+    /// Gain of `rotate`, `turn` and `path`, in rad/s for each radian that is still to turn.
     pub rotate: f64,
-    /// `align`: in rad/s for each metre by which the ranges differ.
+    /// Gain of `align`, in rad/s for each metre by which the ranges differ.
     pub align: f64,
-    /// `goAvoid`: in rad/s for each radian off the direction chosen.
+    /// Gain of `goAvoid`, in rad/s for each radian between the heading and the chosen direction.
     pub avoid: f64,
 }
 
 impl Steering {
-    /// The usual gains. With its fastest turn, `rotate` demands at most 1.6 rad/s² with these gains; a Scout's
-    /// wheels can do more than three times that, and an ATRV-mini's limits were set to 1.55 and 2.
+    /// The usual gains. With these gains, `rotate` requires at most 1.6 rad/s², in its fastest turn. A Scout's wheels
+    /// can do more than three times that, and an ATRV-mini's limits were set to 1.55 and 2.
     pub const USUAL: Self = Self { rotate: 2.0, align: 2.0, avoid: 2.0 };
 }
 
@@ -71,12 +72,12 @@ pub trait SonarRing: Output {
     fn now(&self) -> Nanos;
     /// Returns the distance of the transducers from the centre of the body.
     fn ring_radius(&self) -> Meters;
-    /// Returns the number of pings that must agree before a direction counts as free: three, or two on a robot
-    /// whose sonars fire in turn.
+    /// Returns the number of pings that must agree before a direction is treated as free: two on a robot whose sonars
+    /// fire one after the other, three on any other robot.
     fn confirmation(&self) -> usize {
         3
     }
-    /// Returns the range below which `atIsection` reads a direction as blocked.
+    /// Returns the range below which `atIsection` treats a direction as blocked.
     fn blocked_within(&self) -> Meters {
         Meters(1.15)
     }
@@ -98,8 +99,7 @@ pub trait Paths: Output {
     fn path(&self, name: &str) -> Option<&[Setpoint]>;
 }
 
-/// `modules`: an engine runs the plan, together with modules that publish values which no sensor of the robot
-/// measures.
+/// `modules`: an engine runs the plan together with modules, which publish values that no sensor of the robot measures.
 pub trait Modules: Output {
     /// Returns the last number that the module has published for this attribute; `None` before the first publication.
     fn published(&self, module: &str, attribute: &str) -> Option<PublishedNumber>;
@@ -107,10 +107,10 @@ pub trait Modules: Output {
 
 /// `state_link`: an engine runs the plan, with a link over which robots send each other their states.
 pub trait StateLink: Output {
-    /// Returns the other robots that the plan names.
+    /// Returns the other robots that the plan names, with their states.
     fn links(&self) -> &Links;
 
-    /// Returns another robot that the plan names; `None` if the link knows no robot of this name.
+    /// Returns the other robot with the name `robot`; `None` if the plan names no such robot.
     fn peer(&self, robot: &str) -> Option<&Peer> {
         self.links().peer(robot)
     }

@@ -1,9 +1,10 @@
-//! Estimates the drift of the odometry heading from walls: wheels slip in turns, which falsifies this heading, while
-//! walls do not turn.
+//! Estimates the drift of the odometry heading from walls. Wheels slip in turns, so the heading becomes wrong, but
+//! walls keep their direction.
 //!
-//! Walls are assumed to run at right angles to each other. The drift is an estimate with an error, which grows with
-//! each turn and with the distance driven. A measurement is weighted by its own error. A measurement that deviates from
-//! the estimate by more than both errors allow is rejected, because the echo is then not from such a wall.
+//! Walls are assumed to be parallel or at right angles to each other. The drift is an estimate with an error, which
+//! grows with each turn and with the distance driven. A measurement is weighted by its own error. A measurement that
+//! deviates from the estimate by more than both errors allow is rejected, because the echo is then not from such a
+//! wall.
 
 mod line;
 #[cfg(test)]
@@ -20,15 +21,16 @@ const SIDES: [(usize, f64); 2] = [(4, 1.0), (12, -1.0)];
 const ALONG: Radians = Radians::from_degrees(25.0);
 /// Distance, in metres, beyond which walls are ignored.
 const WITHIN: f64 = 1.5;
-/// Minimum of `Line::squares`, in square metres, at which a wall on one side alone determines the direction.
+/// Minimum value of `RegressionLine::squares`, in square metres, for which a wall on one side alone determines the
+/// direction.
 const LONG: f64 = 4.0;
-/// Maximum difference between the slopes of the left and the right wall at which they count as parallel.
+/// Maximum difference between the slopes of the left and the right wall for which the walls are treated as parallel.
 const PARALLEL: f64 = 0.14;
-/// Maximum difference, in metres, between the ranges of the two outer of three adjacent sonars at which the robot
-/// counts as nearly square to the wall.
+/// Maximum difference, in metres, between the ranges of the outer two of three adjacent sonars for which the robot is
+/// treated as nearly square to the wall.
 const SQUARE: f64 = 0.12;
-/// Maximum difference, in metres, between the range of the middle sonar and the mean range of its two neighbours at
-/// which the wall counts as straight.
+/// Maximum difference, in metres, between the range of the middle sonar and the mean range of its two neighbours for
+/// which the wall is treated as straight.
 const STRAIGHT: f64 = 0.1;
 
 /// Error, in radians, of a direction that is measured by walls on both sides of the path.
@@ -43,7 +45,7 @@ const AGAIN: Nanos = Nanos(1_000_000_000);
 const AT_FIRST: f64 = 0.1;
 /// Maximum error of the drift, in radians.
 const UNKNOWN: f64 = 0.35;
-/// Maximum error, in radians, at which the drift counts as known.
+/// Maximum error, in radians, with which the drift is treated as known.
 const BELIEVED: f64 = 0.3;
 /// Maximum deviation of a measurement from the drift, as a multiple of their combined error. A measurement with a
 /// larger deviation is not from a wall and is rejected.
@@ -52,13 +54,14 @@ const GATE: f64 = 2.0;
 const OF_TURNS: f64 = 0.025;
 /// Increase of the squared error of the heading per metre driven, in square radians.
 const OF_WAYS: f64 = 2e-4;
-/// Angle, in radians, up to which a frame counts as aligned with the axes of odometry.
-const ALIGNED: f64 = 0.02;
-/// Maximum angle, in radians, between the first walls and the axes of odometry at which the walls count as parallel to
+/// Maximum angle, in radians, between a frame and the axes of odometry for which the frame is treated as aligned with
 /// these axes.
+const ALIGNED: f64 = 0.02;
+/// Maximum angle, in radians, between the first walls and the axes of odometry for which the walls are treated as
+/// parallel to these axes.
 const ALONG_AXES: f64 = 0.17;
-/// Maximum drift of a frame whose axes are not those of odometry. A frame with a larger drift counts as askew in the
-/// room.
+/// Maximum drift of a frame whose axes are not the axes of odometry. A frame with a larger drift is treated as not
+/// parallel to the walls of the room.
 const MOST: Radians = Radians::from_degrees(20.0);
 
 /// Estimate of the drift of the heading by odometry, from walls at right angles to each other.
@@ -68,8 +71,8 @@ pub struct Compass {
     drift: f64,
     /// Error of `drift`, in radians.
     error: f64,
-    /// Part of `drift` that is the angle between the first walls and the axes of odometry; 0 if they count as parallel,
-    /// and `None` before any wall is measured.
+    /// Angle between the first walls and the axes of odometry, which is part of `drift`; 0 if the walls are treated as
+    /// parallel to these axes, and `None` before any wall is measured.
     askew: Option<f64>,
     /// Pose by odometry at the last output.
     last: Pose,
@@ -77,7 +80,7 @@ pub struct Compass {
     /// not drive along walls.
     way: Option<Pose>,
     sides: [RegressionLine; 2],
-    /// Time of the newest ping when three pings were last evaluated.
+    /// Time of the newest ping in the last evaluation of three pings.
     judged: Nanos,
 }
 
@@ -96,11 +99,12 @@ impl Default for Compass {
 }
 
 impl Compass {
-    /// Returns the angle by which odometry drift has turned a frame with an axis in the direction `axis` by odometry; 0
-    /// while the drift is not known.
+    /// Returns the angle by which drift has turned a frame; 0 while the drift is not known. `axis` is the direction, by
+    /// odometry, of one of the frame's axes.
     ///
-    /// A frame is assumed to be parallel to the walls. But if the first walls lay askew to the axes of odometry, only
-    /// the later drift of a frame along these axes is known, and the result for any other frame is 0.
+    /// A frame is assumed to be parallel to the walls. However, if the first walls were not parallel to the axes of
+    /// odometry, only the drift since then is known, and only for frames along these axes; the result for any other
+    /// frame is 0.
     #[must_use]
     pub fn drift(&self, axis: Radians) -> Radians {
         let (of_frame, askew) = (-off_quarter(axis.0), self.askew.unwrap_or(0.0));
@@ -109,8 +113,8 @@ impl Compass {
         Radians(if self.error <= BELIEVED && is_sound { drift } else { 0.0 })
     }
 
-    /// Updates the drift with the last pings and the pose by odometry of a robot of this shape. Does nothing for a
-    /// robot whose sonars all ping in every turn: its odometry is assumed not to drift.
+    /// Updates the drift with the last pings and the odometry pose of a robot with this shape. Does nothing for a robot
+    /// whose sonars all ping in every turn, because its odometry is assumed not to drift.
     pub fn take(&mut self, pings: &[Pings; SONARS], odometry: Pose, shape: &Shape) {
         if shape.confirmation >= PINGS_KEPT {
             return;
@@ -209,11 +213,12 @@ impl Compass {
         }
     }
 
-    /// Measures the drift by a straight wall that three adjacent sonars hear, with the middle sonar about square to the
-    /// wall. Nothing is measured while the drift is known more precisely, or before the first measurement by another
-    /// method: three pings are too few to decide whether the room is askew to the axes of odometry.
+    /// Measures the drift with a straight wall from which three adjacent sonars receive echoes, while the middle sonar
+    /// is about square to the wall. Measures nothing while the drift is known more precisely. The first measurement
+    /// must come from another method, because three pings are too few to decide whether the walls of the room are
+    /// parallel to the axes of odometry.
     ///
-    /// If the robot is square to the wall, the two outer sonars hear equal ranges.
+    /// If the robot is square to the wall, the two outer sonars measure equal ranges.
     fn faces(&mut self, pings: &[Pings; SONARS], odometry: Pose, apart: Meters) {
         let newest = pings.iter().filter_map(|pings| pings.newest_first().next()).map(|ping| ping.at).max();
         let Some(newest) =
@@ -242,7 +247,7 @@ impl Compass {
     }
 }
 
-/// Returns the difference of `angle` from the nearest multiple of a right angle: -π/4 to π/4.
+/// Returns the difference between `angle` and the nearest multiple of a right angle, from -π/4 to π/4.
 fn off_quarter(angle: f64) -> f64 {
     let Radians(angle) = Radians(angle).wrapped();
     angle - libm::round(angle / FRAC_PI_2) * FRAC_PI_2

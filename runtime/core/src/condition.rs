@@ -17,20 +17,20 @@ pub enum Condition<I> {
     /// Fires while the length of the path driven since the condition's scope was entered is at least the first
     /// value and below the second.
     Driven(Nanometers, Nanometers),
-    /// Fires when the quark has fired and this much time has passed since the condition's scope was entered:
+    /// Fires when the quark has fired and this much time has passed since the condition's scope was entered. Used for
     /// `stuck`.
     Lasting(I, Nanos),
-    /// Fires when any operand fires: the number of the first operand, and the number of operands.
+    /// Fires when any operand fires. Contains the index of the first operand and the count of operands.
     Or(u32, u32),
-    /// Fires when all operands fire: the number of the first operand, and the number of operands.
+    /// Fires when all operands fire. Contains the index of the first operand and the count of operands.
     And(u32, u32),
-    /// Fires when the operand does not fire: the number of the operand.
+    /// Fires when the operand does not fire. Contains the index of the operand.
     Not(u32),
-    /// Fires when the operand fires and was false in an earlier turn of this scope, as a memory records: the
-    /// numbers of the memory and of the operand.
+    /// Fires when the operand fires and was false in an earlier turn of this scope, as a memory records. Contains the
+    /// indices of the memory and of the operand.
     Rising(u32, u32),
-    /// Fires while the memory that an element has ended is set: the level of the memory's scope, and the number of the
-    /// memory.
+    /// Fires while a memory is set, which records that an element has ended. Contains the level of the memory's scope
+    /// and the index of the memory.
     After(u16, u32),
 }
 
@@ -49,8 +49,8 @@ pub(crate) struct ConditionValues<'r, I, Y, M> {
 }
 
 impl<I> Condition<I> {
-    /// Returns `true` if the condition has fired. Operands with numbers below `from` are ignored. The recursion is as
-    /// deep as parentheses are nested in the condition's text.
+    /// Returns `true` if the condition has fired; operands with numbers below `from` are ignored. The recursion depth
+    /// equals the nesting depth of the parentheses in the condition's text.
     pub(crate) fn fired<Y, M: Memory>(&self, at: &ConditionValues<'_, I, Y, M>, from: u32) -> bool
     where
         I: Interrupt<Y>,
@@ -75,8 +75,7 @@ impl<I> Condition<I> {
         }
     }
 
-    /// Returns the index, from 0, of the first operand that has fired if the condition is an OR; 0 for any other
-    /// condition.
+    /// Returns, for an OR, the index (from 0) of the first operand that has fired; 0 for any other condition.
     pub(crate) fn cause<Y, M: Memory>(&self, at: &ConditionValues<'_, I, Y, M>) -> u32
     where
         I: Interrupt<Y>,
@@ -89,8 +88,8 @@ impl<I> Condition<I> {
         operands.next().unwrap_or(0)
     }
 
-    /// Returns the lowest memory number, from `from` on, of a RISING in the condition whose operand has not fired;
-    /// `None` if there is no such RISING.
+    /// Returns the lowest memory number, starting at `from`, among the RISINGs in the condition whose operands have not
+    /// fired; `None` if there is no such RISING.
     pub(crate) fn first_low<Y, M: Memory>(&self, at: &ConditionValues<'_, I, Y, M>, from: u32) -> Option<u32>
     where
         I: Interrupt<Y>,

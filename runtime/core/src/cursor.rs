@@ -13,7 +13,7 @@ pub struct Cursor<E, P> {
 }
 
 impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
-    /// Returns a cursor at the first atom of `fsm`, all of whose enclosing scopes are entered at time `t`.
+    /// Creates a cursor at the first atom of `fsm`. All scopes that enclose the atom are entered at time `t`.
     ///
     /// `entered` must have a slot for each level of scopes for which [`Cursor::since`] is called, and `left` must have
     /// a slot for each level of loops; their initial values do not matter.
@@ -23,7 +23,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         cursor
     }
 
-    /// Returns the number of the current atom as written, from 0; the number of atoms when the plan is over.
+    /// Returns the index of the current atom in the order of the plan's text; the number of atoms when the plan is
+    /// over.
     pub fn atom(&self) -> u32 {
         self.atom
     }
@@ -64,8 +65,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         Some(Frame(self.entered.heading(level)).turned(turned))
     }
 
-    /// Returns `begin`, with the frame of the current atom instead of the plan's frame if a `FRAME here` encloses the
-    /// atom.
+    /// Returns `begin`; if a `FRAME here` encloses the current atom, the atom's frame replaces the plan's frame.
     #[inline(always)]
     pub(crate) fn begins(&self, begin: Begin) -> Begin {
         self.frame().map_or(begin, |frame| Begin { frame, ..begin })
@@ -83,7 +83,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         scope.map_or(own, |(number, _)| number)
     }
 
-    /// Returns the number of the current state in the expanded plan, from 1; the termination state when the
+    /// Returns the number of the current state in the expanded plan, counted from 1; the termination state when the
     /// plan is over.
     pub fn state(&self, fsm: Fsm<'_>) -> u64 {
         let Some(atom) = fsm.atoms.get(self.atom as usize) else { return fsm.termination };
@@ -160,8 +160,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         }
     }
 
-    /// Makes `atom` current, and restarts every enclosing bracket inside `holder`, or all enclosing brackets if
-    /// `holder` is `None`.
+    /// Makes `atom` current, and restarts every enclosing bracket inside `holder`. If `holder` is `None`, restarts all
+    /// enclosing brackets.
     fn open(&mut self, fsm: Fsm<'_>, atom: u32, holder: Option<u32>, t: Nanos) {
         self.atom = atom;
         // If both are empty in generated code, the compiler knows this and removes the table lookup below.

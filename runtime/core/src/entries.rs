@@ -3,7 +3,7 @@
 
 use crate::{Nanometers, Nanos, Output, Pose, Radians, Slots};
 
-/// Storage for the entry of the scope at each level: only times, or [`Stamps`].
+/// Storage for the entry of the scope at each level: either only times, or [`Stamps`].
 pub trait Entries {
     /// Returns `true` if no level is stored.
     fn is_empty(&self) -> bool;
@@ -22,16 +22,16 @@ pub trait Entries {
     fn stalled(&self) -> Option<Nanos> {
         None
     }
-    /// Records the output of the first turn after the plan was suspended; the path that another plan drove meanwhile
-    /// does not count.
+    /// Records the output of the first turn after the plan was suspended. The path driven during the suspension does
+    /// not count.
     fn resume<Y: Output>(&mut self, _y: &Y) {}
     /// Returns the length of the path driven since the scope of this level was entered.
     #[inline(always)]
     fn way(&self, _level: u16) -> Nanometers {
         Nanometers::ZERO
     }
-    /// Returns the frame of an atom, numbered as written from 0; `None` if the atom is not inside a `FRAME
-    /// here`.
+    /// Returns the frame of the atom with this index, in the order of the plan's text; `None` if the atom is not inside
+    /// a `FRAME here`.
     #[inline(always)]
     fn here(&self, _atom: u32) -> Option<Here> {
         None
@@ -104,8 +104,8 @@ pub struct Stamps<S, F = &'static [Option<Here>]> {
 }
 
 impl<S: Slots<Stamp>, F: AsRef<[Option<Here>]>> Stamps<S, F> {
-    /// Returns storage for as many levels as `slots` has; the initial values do not matter. `frames` has the frame of
-    /// each atom as written, and may be empty in a plan without `FRAME here`.
+    /// Creates storage for as many levels as `slots` has; the initial values do not matter. `frames` contains the frame
+    /// of each atom, in the order of the plan's text; it may be empty for a plan without `FRAME here`.
     #[must_use]
     pub const fn new(slots: S, frames: F) -> Self {
         Self { slots, frames, now: Stamp::START, last: None, stalled: None }

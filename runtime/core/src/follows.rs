@@ -17,7 +17,7 @@ pub struct Follows {
 }
 
 impl Follows {
-    /// Returns the successor that makes `atom` current and enters the scopes of levels `from..to`.
+    /// Creates the successor that makes `atom` current and enters the scopes of levels `from..to`.
     #[must_use]
     pub const fn new(atom: u32, from: u16, to: u16) -> Self {
         Self { atom, from, to }
@@ -25,8 +25,8 @@ impl Follows {
 }
 
 impl Fsm<'_> {
-    /// Returns the successor of this scope; `None` if a loop ends with the scope or begins after it, as the
-    /// successor then depends on the passes left.
+    /// Returns the successor of this scope; `None` if a loop ends with the scope or begins after it, because the
+    /// successor then depends on the number of passes left.
     #[must_use]
     pub fn follows(self, scope: u32) -> Option<Follows> {
         let mut outwards = self.outwards(scope);

@@ -14,15 +14,15 @@
 pub struct Fsm<'a> {
     /// Scopes and loops in pre-order.
     pub brackets: &'a [Bracket],
-    /// The atoms as written, from left to right.
+    /// Atoms in the order of the plan's text.
     pub atoms: &'a [Atom],
-    /// Number of the termination state: `N`, the number of atoms of the expanded plan plus one.
+    /// Number of the termination state: `N`, which is one more than the number of atoms in the expanded plan.
     pub termination: u64,
 }
 
 impl<'a> Fsm<'a> {
-    /// Returns a bracket and all brackets that enclose it, with their numbers, from the inside outwards to the
-    /// plan's own bracket. Stops at a parent whose number is not lower, so the iteration ends even if a table
+    /// Returns an iterator over a bracket and all brackets that enclose it, with their numbers, from the innermost to
+    /// the plan's own bracket. Stops at a parent whose number is not lower, so the iteration ends even if a table
     /// contains a cycle.
     pub fn outwards(self, bracket: u32) -> impl Iterator<Item = (u32, &'a Bracket)> {
         let at = move |number: u32| self.brackets.get(number as usize).map(|bracket| (number, bracket));
@@ -38,11 +38,11 @@ impl<'a> Fsm<'a> {
 /// A scope or a loop, and the atoms inside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bracket {
-    /// Kind of the bracket: a scope or a loop.
+    /// Index of the first atom of the bracket, in the order of the plan's text.
     pub kind: Kind,
-    /// Number of the first atom of the bracket, as written, from 0.
+    /// Index of the last atom of the bracket, in the order of the plan's text.
     pub first: u32,
-    /// Number of the last atom of the bracket, as written, from 0.
+    /// Number of the last atom of the bracket, as written, counted from 0.
     pub last: u32,
     /// Number of the enclosing bracket; the plan's own bracket is its own parent.
     pub parent: u32,
@@ -57,35 +57,35 @@ pub enum Kind {
         /// Number of enclosing scopes.
         level: u16,
     },
-    /// An open string that is run several times: the paper's counter c(t).
+    /// A loop: an open string that is run several times (the paper's counter c(t)).
     Loop {
         /// Total number of passes; 0 for a loop without end.
         times: u64,
         /// Number of enclosing loops, which is the index of the loop's counter in a cursor.
         slot: u16,
-        /// Number of states of one pass in the expanded plan; 0 where passes share their states (a loop without
-        /// end).
+        /// Number of states of one pass in the expanded plan; 0 if all passes share their states, as in a loop without
+        /// end.
         stride: u64,
     },
 }
 
-/// An atom as written.
+/// An atom of the plan's text, in which loops are not expanded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Atom {
     /// Number of the bracket that is the atom's own scope.
     pub scope: u32,
-    /// Number of the atom's state, from 1, in the expanded plan in the first pass of every enclosing loop.
+    /// Number of the atom's state in the expanded plan, counted from 1, during the first pass of all enclosing loops.
     pub state: u64,
 }
 
 impl Bracket {
-    /// Returns a scope of atoms `first..=last`.
+    /// Creates a scope over the atoms `first..=last`.
     #[must_use]
     pub const fn scope(level: u16, first: u32, last: u32, parent: u32) -> Self {
         Self { kind: Kind::Scope { level }, first, last, parent }
     }
 
-    /// Returns a loop over atoms `first..=last`; see [`Kind::Loop`] for the other parameters.
+    /// Creates a loop over the atoms `first..=last`; see [`Kind::Loop`] for the other parameters.
     #[must_use]
     pub const fn repeat(times: u64, slot: u16, stride: u64, first: u32, last: u32, parent: u32) -> Self {
         Self { kind: Kind::Loop { times, slot, stride }, first, last, parent }
@@ -93,7 +93,7 @@ impl Bracket {
 }
 
 impl Atom {
-    /// Returns an atom whose own scope is the bracket `scope`, and whose state in the first pass of all enclosing loops
+    /// Creates an atom whose own scope is the bracket `scope`, and whose state in the first pass of all enclosing loops
     /// is `state`.
     #[must_use]
     pub const fn new(scope: u32, state: u64) -> Self {

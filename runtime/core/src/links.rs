@@ -6,7 +6,7 @@ use crate::{Nanos, Pose, Twist};
 /// Maximum number of other robots that one plan names.
 pub const PEERS: usize = 8;
 
-/// Age from which the state of another robot counts as stale, and the link to that robot as down.
+/// Age at which the state of another robot is treated as stale, and the link to that robot as down.
 pub const STALE: Nanos = Nanos(500_000_000);
 
 /// The newest state of another robot.
@@ -18,9 +18,9 @@ pub struct PeerState {
     pub velocity: Twist,
     /// Time since the state arrived.
     pub age: Nanos,
-    /// Number of times that the robot has entered a scope with a `rendezvous` with the receiver.
+    /// Number of times that the other robot has entered a scope with a `rendezvous` with the receiver.
     pub rounds: u64,
-    /// Number of the atom that the robot's plan was running, from 1 in the order of the plan's text;
+    /// Number of the atom that the robot's plan was running, counting from 1 in the order of the plan's text;
     /// [`PeerState::OVER`] if the plan was over, and 0 if it had not begun.
     pub atom: u64,
 }

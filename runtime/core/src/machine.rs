@@ -10,21 +10,21 @@ pub const TRANSITIONS_PER_TURN: u32 = 4096;
 /// A transition of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
-    /// Number of the state left, in the expanded plan, from 1.
+    /// Number of the state that was left, in the expanded plan, counted from 1.
     pub from: u64,
     /// Number of the bracket of the scope that ended.
     pub scope: u32,
-    /// Cause for which the scope ended.
+    /// Cause of the scope's end.
     pub cause: Cause,
-    /// Number of the atom entered, as written, from 0; `None` when the plan is over.
+    /// Index of the atom that was entered, in the order of the plan's text; `None` when the plan is over.
     pub atom: Option<u32>,
-    /// Number of the state entered, in the expanded plan, from 1.
+    /// Number of the state that was entered, in the expanded plan, counted from 1.
     pub to: u64,
 }
 
 /// Observer of a plan, which is called for every transition, in order.
 pub trait Watch {
-    /// `false` if the observer ignores its arguments, so that the state numbers need not be computed.
+    /// `false` if the observer ignores its arguments; the state numbers are then not computed.
     const LOOKS: bool = true;
 
     /// Reports that the operand with this number has fired in the interrupt that ends a scope. The machine calls this
@@ -72,8 +72,8 @@ pub struct Machine<P: Plan> {
 }
 
 impl<P: Plan> Machine<P> {
-    /// Begins `plan` with the first output `y` and its time `t`. [`Machine::turn`] then makes the first turn,
-    /// with the same output and time.
+    /// Begins `plan` with the first output `y`, which was measured at time `t`. The first turn, made by
+    /// [`Machine::turn`], has the same output and time.
     pub fn begin(mut plan: P, y: &P::Output, t: Nanos) -> Self {
         let frame = Frame(y.here().theta);
         let (mut entered, left) = plan.slots();
@@ -149,7 +149,8 @@ impl<P: Plan> Machine<P> {
         is_over
     }
 
-    /// Passes the operands that have fired to `watch`, and returns the state and the scope that are about to be left.
+    /// Passes the operands that have fired to `watch`. Returns the numbers of the state and the scope that are about to
+    /// be left.
     fn look<W: Watch>(&self, cause: Cause, y: &P::Output, t: Nanos, watch: &mut W) -> (u64, u32) {
         let fsm = self.plan.fsm();
         let scope = self.cursor.scope(fsm, cause.level());
@@ -187,7 +188,7 @@ impl<P: Plan> Machine<P> {
         self.cursor.state(self.plan.fsm())
     }
 
-    /// Returns the number of the current atom as written, from 0; `None` when the plan is over.
+    /// Returns the index of the current atom in the order of the plan's text; `None` when the plan is over.
     pub fn atom(&self) -> Option<u32> {
         (!self.is_over()).then_some(self.cursor.atom())
     }

@@ -1,15 +1,16 @@
-//! Memories of a plan: one for each RISING in an entered scope, and those of labels, from which `after` reads which
-//! elements ended last (docs/src/reference/semantics.md, 2.2 and 2.3).
+//! Memories of a plan (docs/src/reference/semantics.md, 2.2 and 2.3). Each RISING in an entered scope has a memory. The
+//! memories of labels record which elements ended last; `after` reads them.
 
 use crate::Slots;
 
-/// The memories of a plan, in one row for each level of scopes; `()` for a plan without memories.
+/// Storage for the memories of a plan, with one row for each level of scopes. `()` is the storage of a plan without
+/// memories.
 pub trait Memory {
     /// Returns `true` if the plan has memories.
     fn keeps(&self) -> bool;
-    /// Returns `true` if this memory in the row of this level is set.
+    /// Returns `true` if the memory with this index in the row of this level is set.
     fn is_set(&self, level: u16, memory: u32) -> bool;
-    /// Sets or clears this memory in the row of this level.
+    /// Sets or clears the memory with this index in the row of this level.
     fn set(&mut self, level: u16, memory: u32, value: bool);
     /// Clears the memories of this level and of all nested levels.
     fn forget(&mut self, level: u16);
@@ -41,7 +42,7 @@ pub struct MarkRow {
     pub first: u32,
     /// Number of the label's memories.
     pub count: u32,
-    /// Position of the label's first fact in [`Table::facts`](crate::Table::facts).
+    /// Index of the label's first fact in [`Table::facts`](crate::Table::facts).
     pub first_fact: u32,
     /// Number of the label's facts.
     pub facts: u32,
@@ -52,7 +53,8 @@ pub struct MarkRow {
 pub struct Fact {
     /// Number of the memory, in the row that [`MarkRow::level`] gives.
     pub memory: u32,
-    /// Index of the operand of the bracket's interrupt that must have fired; `None` if the `after` names no cause.
+    /// Index of the operand, within the bracket's interrupt, that must have fired; `None` if the `after` names no
+    /// cause.
     pub operand: Option<u32>,
 }
 
@@ -80,8 +82,8 @@ pub struct Memories<S> {
 }
 
 impl<S: Slots<bool>> Memories<S> {
-    /// Returns `width` memories for each level of scopes, stored in `set`, whose values must be `false`. A memory for
-    /// which `set` has no place is never set.
+    /// Creates storage with `width` memories for each level of scopes. `set` contains the values, which must all be
+    /// `false`; a memory for which `set` has no place is never set.
     #[must_use]
     pub const fn new(width: u32, set: S) -> Self {
         Self { width, set }

@@ -13,7 +13,7 @@ use crate::{Condition, Cursor, Entries, Examined, Fsm, Interrupt, Measured, Memo
 pub struct Conditions<'a, I> {
     /// The condition of each bracket, in the order of the brackets.
     pub conditions: &'a [Condition<I>],
-    /// The operands of conditions. The operands of an operand come after it.
+    /// The operands of conditions. The operands of an operand come after it in this list.
     pub operands: &'a [Condition<I>],
 }
 

@@ -7,7 +7,7 @@ use crate::Radians;
 pub enum Operator {
     /// The values differ by at most this tolerance.
     Equal(f64),
-    /// Two directions differ by at most this tolerance, the shorter way round.
+    /// Two directions differ by at most this tolerance, measured along the shorter arc.
     SameDirection(f64),
     /// The first value is less than the second.
     Less,

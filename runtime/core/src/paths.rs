@@ -31,7 +31,7 @@ impl PathStore {
     /// A store without paths.
     pub const EMPTY: Self = Self(&[]);
 
-    /// Returns a store of these paths, which must be sorted by name.
+    /// Creates a store of these paths, which must be sorted by name.
     #[must_use]
     pub const fn new(paths: &'static [StoredPath]) -> Self {
         Self(paths)

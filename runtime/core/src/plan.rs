@@ -12,14 +12,14 @@ pub trait Plan {
     type Output: Output;
     /// Input of the robot; the default is the null input.
     type Input: Default;
-    /// Storage for the entry of each level of scopes.
+    /// Storage for the entry of the scope at each level.
     type Entered: Entries;
-    /// Storage for the counter of each level of loops.
+    /// Storage for the counter of the loop at each level.
     type Left: Slots<u64>;
 
     /// Returns the machine's tables.
     fn fsm(&self) -> Fsm<'_>;
-    /// Returns storage for a cursor; its values do not matter.
+    /// Returns storage for a cursor; the initial values do not matter.
     fn slots(&self) -> (Self::Entered, Self::Left);
     /// Creates the law of `atom`, which is now the current atom. Called once for each atom entered.
     fn enter(&mut self, atom: u32, y: &Self::Output, begin: Begin);
@@ -28,7 +28,7 @@ pub trait Plan {
     /// done; `None` if the atom continues.
     fn next(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Self::Output, t: Nanos) -> Option<Ending>;
 
-    /// Returns `false` if the plan keeps neither odometry, progress nor memories; the machine then does not call
+    /// Returns `false` if the plan stores neither odometry nor progress nor memories; the machine then does not call
     /// [`Entries::observe`], [`Plan::leave`] and [`Plan::settle`]. The value never changes while the plan runs.
     #[inline(always)]
     fn observes(&self) -> bool {
@@ -57,8 +57,8 @@ pub trait Plan {
     /// Returns the input that the current atom's law computes.
     fn input(&mut self, y: &Self::Output, t: Nanos) -> Self::Input;
 
-    /// Calls `tell` with the number, in the order of [`Words::operand`], and the values of each fired operand
-    /// in the interrupt of `scope`, which encloses the current atom. The machine calls this function only for a
+    /// Calls `tell` with the number and the values of each fired operand in the interrupt of `scope`, which encloses
+    /// the current atom. Operands are numbered as in [`Words::operand`]. The machine calls this function only for a
     /// [`Watch`](crate::Watch), before the scope is left. A plan written by hand may report no operands.
     fn operands(
         &self,
@@ -94,12 +94,12 @@ pub trait Plan {
         &[]
     }
 
-    /// Returns the names of the other robots that the plan reads by the state link.
+    /// Returns the names of the other robots whose states the plan reads over the state link.
     fn robots(&self) -> &[&'static str] {
         &[]
     }
 
-    /// Returns the scopes that wait for other robots by `rendezvous`, in order.
+    /// Returns the scopes that wait for other robots with `rendezvous`, in order.
     fn meetings(&self) -> &[Meeting] {
         &[]
     }
@@ -110,7 +110,7 @@ pub trait Plan {
 pub enum Cause {
     /// The interrupt of the scope at this level has fired.
     Fired(u16),
-    /// The law of the atom, whose scope is at this level, is done, and no enclosing interrupt has fired.
+    /// The law of the atom is done, and no enclosing interrupt has fired. Contains the level of the atom's scope.
     Completed(u16),
 }
 
@@ -140,7 +140,7 @@ impl From<Cause> for Ending {
 }
 
 impl Cause {
-    /// Returns the ending of a scope with this cause and the successor `follows`.
+    /// Creates the ending of a scope with this cause and the successor `follows`.
     #[must_use]
     pub const fn then(self, follows: Follows) -> Ending {
         Ending { cause: self, follows: Some(follows) }

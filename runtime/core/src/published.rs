@@ -3,10 +3,10 @@
 
 use crate::{Links, Nanos};
 
-/// Maximum number of attributes of modules that one plan reads.
+/// Maximum number of module attributes that one plan reads.
 pub const PUBLISHED: usize = 16;
 
-/// An attribute of a module that a plan reads.
+/// A module's attribute that a plan reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ModuleRead {
     /// Name of the module.
@@ -28,7 +28,7 @@ pub struct PublishedNumber {
     pub age: Nanos,
 }
 
-/// The latest published numbers that a plan reads. Without an engine there are none.
+/// The latest numbers that modules have published for a plan; without an engine, there are no such numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Published {
     names: &'static [ModuleRead],
@@ -39,11 +39,11 @@ pub struct Published {
 }
 
 impl Published {
-    /// No published numbers.
+    /// Storage without any published numbers.
     pub const NONE: Self = Self::new(&[]);
 
-    /// Returns the storage for the numbers of these attributes before any number is published. Attributes after the
-    /// first [`PUBLISHED`] have no number.
+    /// Creates storage for the numbers that modules will publish for the attributes `names`. Only the first
+    /// [`PUBLISHED`] attributes can have a number.
     #[must_use]
     pub const fn new(names: &'static [ModuleRead]) -> Self {
         Self { names, numbers: [None; PUBLISHED], oldest: Nanos::ZERO, links: Links::NONE }
@@ -73,7 +73,7 @@ impl Published {
         &self.links
     }
 
-    /// Sets the number of the attribute at this position in the list of names.
+    /// Sets the number of the attribute at the index `place` in the list of names.
     pub fn set(&mut self, place: usize, number: Option<PublishedNumber>) {
         if let Some(entry) = self.numbers.get_mut(place) {
             *entry = number;

@@ -5,7 +5,8 @@ use crate::{Frame, Measured, Nanos, Radians};
 
 /// An interrupt quark: a condition on the output.
 pub trait Interrupt<Y: ?Sized> {
-    /// Returns `true` if the interrupt has fired. The paper's function is active low: it is then 0.
+    /// Returns `true` if the interrupt has fired. The paper's function is active low: it is 0 when the interrupt has
+    /// fired.
     fn fired(&self, y: &Y) -> bool;
 
     /// Returns `true` if the interrupt has fired, given the report `stalled` of the law of the previous turn
@@ -23,7 +24,7 @@ pub trait Interrupt<Y: ?Sized> {
     }
 }
 
-/// Time and frame in which an atom begins, for its law.
+/// Time and frame in which an atom begins; the law of the atom needs both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Begin {
     /// Time of the turn in which the atom is entered.
@@ -33,20 +34,20 @@ pub struct Begin {
 }
 
 impl Begin {
-    /// Returns the same time, with the frame turned counter-clockwise by `by`.
+    /// Returns `self` with its frame turned counter-clockwise by `by`; the time stays the same.
     #[must_use]
     pub fn turned(self, by: Radians) -> Self {
         Self { frame: self.frame.turned(by), ..self }
     }
 }
 
-/// A control quark with its arguments. An atom that begins creates a [`Law`] from it.
+/// A control quark with its arguments. Each atom that begins creates a [`Law`] from it.
 pub trait Control<Y: ?Sized> {
-    /// Type of the law, which stores the state.
+    /// Type of the running law, which contains the law's state.
     type Law: Law<Y>;
 
-    /// Returns the law in its initial state, for an atom that is entered. The function must have no side effects,
-    /// because the law of a skipped atom is created but never applied.
+    /// Creates the law in its initial state when an atom is entered. The function must have no side effects, because
+    /// the law of a skipped atom is created but never applied.
     fn begin(&self, y: &Y, begin: Begin) -> Self::Law;
 }
 
@@ -59,8 +60,8 @@ pub trait Law<Y: ?Sized> {
     /// time `t` of the turn.
     fn input(&mut self, y: &Y, t: Nanos) -> Self::Input;
 
-    /// Returns how long the law has made no progress towards its goal; `None` for a law without a goal. Read at the
-    /// start of each turn, for the interrupt `stuck`.
+    /// Returns how long the law has made no progress towards its goal; `None` for a law without a goal. Called at the
+    /// start of each turn for the interrupt `stuck`.
     fn stalled(&self, _y: &Y, _t: Nanos) -> Option<Nanos> {
         None
     }

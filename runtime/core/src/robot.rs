@@ -22,43 +22,41 @@ pub trait Robot {
     /// Fails if the robot does not answer, answers nonsense, or reports that it cannot move.
     fn exchange(&mut self, input: &Self::Input) -> Result<Self::Output, Self::Error>;
 
-    /// Stops the robot with its own stop command; called however the run ends.
+    /// Stops the robot with its own stop command. Called at the end of every run, for whatever reason the run ends.
     ///
     /// # Errors
     /// Fails if the command could not be delivered; the hardware's watchdog then stops the robot.
     fn stop(&mut self) -> Result<(), Self::Error>;
 
-    /// Returns the longest time without a command, by the wall clock, after which the robot may still be
-    /// driven: the timeout of the robot's own watchdog, or the time for which its data stay fresh. After a
-    /// longer gap, for example when the program was suspended, the run ends with a fault before a command is
-    /// sent. `None` means two seconds more than the period. Simulated time has no gaps.
+    /// Returns the maximum wall-clock time without a command after which the robot may still be driven: the timeout of
+    /// the robot's own watchdog, or the time for which its data stay fresh. After a longer gap, for example when the
+    /// program was suspended, the run ends with a fault before a command is sent. `None` means two seconds more than
+    /// the period. Simulated time has no gaps.
     fn longest_gap(&self) -> Option<Duration> {
         None
     }
 }
 
-/// The part of an output that every robot offers, whatever its sensors. The traits of [`crate::capability`] add
-/// the rest.
+/// The part of the output that all robots have in common. The traits of [`crate::capability`] add the rest.
 pub trait Output {
-    /// Returns the pose by odometry, from which a plan that begins now takes its frame; the origin on a robot without
-    /// odometry.
+    /// Returns the pose by odometry; the origin on a robot without odometry. The heading of this pose determines the
+    /// frame of a plan that begins now.
     fn here(&self) -> Pose {
         Pose::ORIGIN
     }
 
-    /// Returns the reading of an odometer that measures the length of the path driven; `None` on a robot
-    /// without an odometer. The machine then adds up the distances between [`Output::here`] of successive
-    /// turns.
+    /// Returns the reading of an odometer that measures the length of the path driven; `None` on a robot without an
+    /// odometer. Without an odometer, the machine adds up the distances between [`Output::here`] of successive turns.
     fn way(&self) -> Option<Nanometers> {
         None
     }
 
-    /// Takes the numbers that modules have published for the plan. An engine calls it before each turn; an
+    /// Stores the numbers that modules have published for the plan. An engine calls this function before each turn; an
     /// output whose quarks read no modules ignores the numbers.
     fn take_published(&mut self, _published: Published) {}
 
-    /// Takes the states of other robots from the state link. An engine calls this function before each turn; an
-    /// output whose quarks name no robots ignores them.
+    /// Stores the states of other robots from the state link. An engine calls this function before each turn; an output
+    /// whose quarks name no robots ignores them.
     fn take_links(&mut self, _links: Links) {}
 
     /// Returns the velocities of the robot, which the state link sends to other robots; zero on a robot that

@@ -26,8 +26,8 @@ type OutputOf<T> = <<T as Table>::Alphabet as Alphabet>::Output;
 type InputOf<T> = <<T as Table>::Alphabet as Alphabet>::Input;
 
 impl<T: Table, E: Entries, P: Slots<u64>> InRows<T, E, P> {
-    /// Returns the plan before it begins. `entered` and `left` are the storage for each level of scopes and of loops;
-    /// their initial values do not matter.
+    /// Creates the plan, which has not begun yet. `entered` and `left` are the storage for each level of scopes and of
+    /// loops; their initial values do not matter.
     #[must_use]
     pub const fn new(table: T, entered: E, left: P) -> Self {
         Self { table, slots: (entered, left), memory: (), running: None, own: 0 }
@@ -35,7 +35,7 @@ impl<T: Table, E: Entries, P: Slots<u64>> InRows<T, E, P> {
 }
 
 impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
-    /// Returns a plan with the memories `memory` for RISING and `after`, none of which is set at first.
+    /// Creates a plan with the memories `memory` for RISING and `after`; no memory is set at first.
     #[must_use]
     pub const fn remembering(table: T, entered: E, left: P, memory: M) -> Self {
         Self { table, slots: (entered, left), memory, running: None, own: 0 }
@@ -79,8 +79,8 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
         guard.condition.fired(&reading(&self.table, &self.memory, guard, cursor, y, t), 0)
     }
 
-    /// Records the facts about the elements that end with a scope for this cause, and clears the facts of the
-    /// elements inside the scope.
+    /// Records, for `after`, the cause for which a scope ends and the elements that end with it. Clears the facts of
+    /// the elements inside the scope.
     fn record(&mut self, cursor: &Cursor<E, P>, cause: Cause, y: &OutputOf<T>, t: Nanos) {
         let Self { table, memory, .. } = self;
         let (fsm, marks, facts) = (table.fsm(), table.marks(), table.facts());

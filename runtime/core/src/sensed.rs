@@ -1,5 +1,5 @@
-//! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars, a battery and a
-//! store of paths: its values, and the capabilities that they implement (`y = h(x)`, paper, Eq. 1).
+//! The output of a robot with two driven wheels, odometry, bumper switches, sixteen sonars, a battery and a store of
+//! paths (`y = h(x)`, paper, Eq. 1): the measured values, and the capability traits that the output implements.
 
 use crate::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing, StateLink, Steering};
 use crate::{
@@ -25,8 +25,7 @@ pub struct Sensed {
     pub switches: u32,
     /// The newest pings of each sonar.
     pub pings: [Pings; SONARS],
-    /// Drift of the heading by odometry, measured by walls; the default on a robot whose odometry does not
-    /// drift.
+    /// Drift of the odometry heading, estimated from walls; the default on a robot whose odometry does not drift.
     pub compass: Compass,
     /// Power supply as the robot reports it; the default on a robot that does not report it.
     pub supply: Supply,
@@ -34,7 +33,7 @@ pub struct Sensed {
     pub shape: Shape,
     /// The paths that the plan can replay; empty on a robot without paths.
     pub paths: PathStore,
-    /// The numbers of modules and the other robots that the plan reads, which an engine fills in.
+    /// Numbers from modules and states of other robots that the plan reads; an engine fills them in.
     pub published: Published,
 }
 

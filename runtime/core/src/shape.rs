@@ -14,12 +14,13 @@ pub struct Shape {
     pub half_width: Meters,
     /// Distance between the wheels.
     pub wheel_base: Meters,
-    /// Distance between the two points of a wall beside the robot from which the neighbours of the sonar square to the
-    /// wall get their echoes; `None` for a robot whose odometry measures the heading better than walls do.
+    /// Distance between two points on a wall beside the robot: the points that reflect the pings of the two neighbours
+    /// of the sonar that is square to the wall. `None` for a robot whose odometry measures the heading better than
+    /// walls do.
     pub sonars_apart: Option<Meters>,
     /// Distance of the sonars from the robot's centre.
     pub ring_radius: Meters,
-    /// Number of pings that must agree before a direction counts as free.
+    /// Number of pings that must agree before a direction is treated as free.
     pub confirmation: usize,
     /// Steering gains of the laws.
     pub steering: Steering,

@@ -2,7 +2,7 @@
 
 use crate::{Interrupt, Measured, Operator};
 
-/// A number of the output that comparisons read, in SI units.
+/// A numeric value of the output that comparisons read, in SI units.
 pub trait Signal<Y: ?Sized> {
     /// Returns the current value, in SI units; infinite where the sensor had no echo.
     fn value(&self, y: &Y) -> f64;
@@ -35,7 +35,7 @@ pub struct Comparison<S, O> {
 }
 
 impl<S, O> Comparison<S, O> {
-    /// Returns a comparison of `signal` with `with`.
+    /// Creates a comparison of `signal` with `with`.
     #[must_use]
     pub const fn new(signal: S, operator: Operator, with: Operand<O>) -> Self {
         Self { signal, operator, with }

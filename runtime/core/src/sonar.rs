@@ -6,7 +6,7 @@ use crate::{Meters, Nanos, Pose, Radians};
 
 /// Number of sonars, which is also the number of directions in the paper's plans.
 pub const SONARS: usize = 16;
-/// Number of pings of each sonar that an output keeps: the number that confirms that a direction is free.
+/// Number of pings that an output keeps for each sonar; this many pings confirm that a direction is free.
 pub const PINGS_KEPT: usize = 3;
 
 /// One of the sixteen sonars: number `i` looks along `i · 22.5°`, counter-clockwise from the front, on every robot.
@@ -14,7 +14,7 @@ pub const PINGS_KEPT: usize = 3;
 pub struct SonarId(u8);
 
 impl SonarId {
-    /// Returns the sonar with this number, counted round the ring (16 is 0 again).
+    /// Returns the sonar with this number. Numbers wrap around the ring, so 16 is the sonar 0.
     #[must_use]
     pub const fn new(number: u8) -> Self {
         Self(number & 15)
@@ -44,7 +44,7 @@ pub struct Ping {
     pub at: Nanos,
     /// Pose of the robot by odometry when the ping was taken.
     pub pose: Pose,
-    /// Mount of the transducer that heard the echo.
+    /// Mount of the transducer that received the echo.
     pub mount: Mount,
 }
 
@@ -54,7 +54,7 @@ pub struct Ping {
 pub struct Mount {
     /// Distance, in metres, at which the transducer's axis passes the robot's centre; positive on the left.
     pub left: f32,
-    /// Angle, in radians, by which the transducer's axis is turned counter-clockwise from that of the sonar.
+    /// Angle, in radians, from the sonar's axis to the transducer's axis, counter-clockwise positive.
     pub turned: f32,
 }
 

@@ -7,8 +7,8 @@ use crate::TextList;
 pub trait Words {
     /// Returns the line and the condition of a bracket; `None` for a plan without source text.
     fn bracket(&self, bracket: u32) -> Option<BracketWords<'_>>;
-    /// Returns the text and the line of operand `number`, from 0, in a bracket's condition; `None` if there is no such
-    /// operand.
+    /// Returns the text and the line of operand `number`, counted from 0, in a bracket's condition; `None` if there is
+    /// no such operand.
     fn operand(&self, bracket: u32, number: u32) -> Option<OperandWords<'_>>;
     /// Returns the name of the file that contains this line; an empty text if the file is not known.
     fn file(&self, at: SourceLine) -> &str;
@@ -21,21 +21,22 @@ impl<'w> dyn Words + 'w {
     }
 }
 
-/// The source text of a plan as constants. They are rows of numbers and long joined texts, because rustc takes long to
-/// compile many texts.
+/// The source text of a plan as constants. The texts are stored as rows of numbers and a few long joined texts, because
+/// rustc takes long to compile many separate texts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source<'a> {
     /// Names of the files, without folders.
     pub files: &'a [&'a str],
-    /// For each bracket: its file, its line, its first operand, and the number of its operands.
+    /// For each bracket: the number of the file, the line, the index of the first operand, and the count of operands.
     pub brackets: &'a [[u32; 4]],
     /// The condition of each bracket as written.
     pub conditions: TextList<'a>,
-    /// For each operand of all conditions: its file, its line, its first value, and the number of its values.
+    /// For each operand of all conditions: the number of the file, the line, the index of the first value, and the
+    /// count of values.
     pub operands: &'a [[u32; 4]],
     /// The condition text of each operand, as traces show it.
     pub texts: TextList<'a>,
-    /// The words of each operand as written.
+    /// Each operand as written in the source text.
     pub written: TextList<'a>,
     /// Positions of the values in the texts of all operands.
     pub values: &'a [ValueWords<'a>],
@@ -46,7 +47,7 @@ pub struct Source<'a> {
 pub struct SourceLine {
     /// Number of the file in [`Source::files`].
     pub file: u16,
-    /// Number of the line, from 1.
+    /// Number of the line, counted from 1.
     pub line: u32,
 }
 
@@ -57,7 +58,7 @@ pub struct BracketWords<'a> {
     pub at: SourceLine,
     /// Condition of the scope as written; empty for a loop and for a scope without a condition.
     pub condition: &'a str,
-    /// Position of the bracket's first operand among the operands of all brackets.
+    /// Index of the bracket's first operand among the operands of all brackets.
     pub first: u32,
     /// Number of the bracket's operands.
     pub count: u32,
@@ -68,7 +69,7 @@ pub struct BracketWords<'a> {
 pub struct OperandWords<'a> {
     /// Condition text of the operand, as traces show it.
     pub text: &'a str,
-    /// The operand as written.
+    /// Source text of the operand.
     pub written: &'a str,
     /// Line in which the operand begins.
     pub at: SourceLine,
@@ -121,7 +122,7 @@ impl Words for Source<'_> {
     }
 }
 
-/// Returns the line `line` of the file with the number `file`.
+/// Returns line number `line` of file number `file`.
 fn place(file: u32, line: u32) -> SourceLine {
     SourceLine { file: u16::try_from(file).unwrap_or(u16::MAX), line }
 }

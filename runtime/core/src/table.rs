@@ -14,8 +14,8 @@ pub trait Table {
     fn fsm(&self) -> Fsm<'_>;
     /// Returns the condition that ends each bracket and the successor of the bracket, in the order of the brackets.
     fn guards(&self) -> &[Guard<<Self::Alphabet as Alphabet>::Interrupt>];
-    /// Returns the operands of conditions. The operands of an operand come after it, so they cannot form a
-    /// cycle.
+    /// Returns the operands of conditions. The operands of an operand come after it in this list, so operands cannot
+    /// form a cycle.
     fn operands(&self) -> &[Condition<<Self::Alphabet as Alphabet>::Interrupt>];
     /// Returns the law of each atom, in the order of the atoms.
     fn laws(&self) -> &[LawRow<<Self::Alphabet as Alphabet>::Control>];
@@ -39,12 +39,12 @@ pub trait Table {
         &[]
     }
 
-    /// Returns the names of the other robots that the plan reads by the state link.
+    /// Returns the names of the other robots whose states the plan reads over the state link.
     fn robots(&self) -> &[&'static str] {
         &[]
     }
 
-    /// Returns the scopes that wait for other robots by `rendezvous`, in their order.
+    /// Returns the scopes that wait for other robots with `rendezvous`, in order.
     fn meetings(&self) -> &[Meeting] {
         &[]
     }
@@ -56,7 +56,8 @@ pub struct Rows<'a, A: Alphabet> {
     pub fsm: Fsm<'a>,
     /// Condition that ends each bracket, in the order of the brackets.
     pub guards: &'a [Guard<A::Interrupt>],
-    /// The operands of conditions. The operands of an operand come after it, so they cannot form a cycle.
+    /// The operands of conditions. The operands of an operand come after it in this list, so operands cannot form a
+    /// cycle.
     pub operands: &'a [Condition<A::Interrupt>],
     /// Law of each atom, in the order of the atoms.
     pub laws: &'a [LawRow<A::Control>],

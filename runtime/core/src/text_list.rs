@@ -12,14 +12,14 @@ impl<'a> TextList<'a> {
     /// The empty list.
     pub const NONE: Self = Self::new("", &[]);
 
-    /// Returns the list of the texts in `joined`, which have no separators; `ends` has the byte offset at which
+    /// Creates the list of the texts in `joined`, which have no separators; `ends` contains the byte offset at which
     /// each text ends.
     #[must_use]
     pub const fn new(joined: &'a str, ends: &'a [u32]) -> Self {
         Self { joined, ends }
     }
 
-    /// Returns the text of this number, from 0; an empty text if the list has no such text.
+    /// Returns the text of this number, counted from 0; an empty text if the list has no such text.
     #[must_use]
     pub fn text(self, number: u32) -> &'a str {
         let end = |number: u32| self.ends.get(number as usize).map(|end| *end as usize);

@@ -8,11 +8,11 @@ use crate::{Cause, Frame, Nanos, Plan, Radians, Transition};
 /// A line of a trace, without the line break.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line<'a, F> {
-    /// The number of the turn, from 0.
+    /// The number of the turn, counted from 0.
     pub turn: u64,
     /// Time of the turn.
     pub t: Nanos,
-    /// State in which the turn ended, in the expanded plan, from 1.
+    /// State in which the turn ended, in the expanded plan, counted from 1.
     pub state: u64,
     /// The quark text of the law that was applied; `None` for the null input.
     pub law: Option<&'a str>,
@@ -25,7 +25,7 @@ pub struct Line<'a, F> {
 /// A transition in a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fired<'a, O> {
-    /// Number of the state left, in the expanded plan, from 1.
+    /// Number of the state left, in the expanded plan, counted from 1.
     pub from: u64,
     /// Number of scopes that enclose the scope that ended.
     pub level: usize,

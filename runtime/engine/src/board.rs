@@ -1,5 +1,5 @@
-//! The board, which contains the last value of every attribute of every module and changes only at turn breaks.
-//! Positions on the board are determined when modules are loaded or unloaded, so a turn looks up no names.
+//! The board, which contains the last value of every attribute of every module and changes only between turns.
+//! Positions on the board are fixed when modules are loaded or unloaded, so no turn has to look up names.
 
 use std::sync::Arc;
 
@@ -13,11 +13,11 @@ use crate::module::{About, Declared, Ports, Refusal, ValueSource};
 #[derive(Debug, Default)]
 pub struct Board {
     posts: Vec<Post>,
-    /// Attributes whose first value with a NaN was refused since the last call of [`Board::newly_refused`].
+    /// Attributes that had a value with NaN refused for the first time since the last call of [`Board::newly_refused`].
     refused: Vec<AttributeName>,
 }
 
-/// An attribute on the board.
+/// An attribute on the board, with its last value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Post {
     /// Name of the attribute.
@@ -26,14 +26,14 @@ pub struct Post {
     pub about: About,
     /// The value that was published last; `None` before the first publication.
     pub reading: Option<Reading>,
-    /// Latency that the module declares: the time between two of its exchanges.
+    /// Latency that the module declares for the time between two of its exchanges.
     pub latency: Nanos,
     /// Number of values that were not published because they contain NaN.
     pub refused: u64,
 }
 
-/// Board position of each value that a module reads, in the order of the module's declaration; `None` for a setting and
-/// for an attribute that no module publishes.
+/// Board position of each value that a module reads, in the order of the module's declaration. The entry is `None` for
+/// a setting, and for an attribute that no module publishes.
 pub(crate) type Wires = Vec<Option<usize>>;
 
 impl Board {
@@ -90,8 +90,8 @@ impl Board {
         self.posts.iter().position(|post| &*post.name.module == module).unwrap_or(self.posts.len())
     }
 
-    /// Adds an attribute of a module that is not loaded here: a module of a recorded run that is replayed, or a module
-    /// of another robot. Replaces an earlier attribute with this name.
+    /// Adds an attribute whose module is not loaded in this engine, because it belongs to another robot or to a
+    /// recorded run that is being replayed. Replaces an earlier attribute with this name.
     pub(crate) fn restore(&mut self, name: AttributeName, kind: AttributeKind) {
         self.forget(&name);
         let unit = kind.quantity().and_then(ParameterKind::base_unit);
@@ -114,7 +114,7 @@ impl Board {
     /// Returns the positions on the board of all values that a module reads.
     ///
     /// # Errors
-    /// Fails if the module expects another kind than an attribute has.
+    /// Fails if an attribute does not have the kind that the module expects.
     pub(crate) fn wires(&self, reader: &str, declared: &Declared) -> Result<Wires, Refusal> {
         let wire = |source: &ValueSource| {
             let ValueSource::Attribute(name, read) = source else { return Ok(None) };
@@ -159,12 +159,12 @@ impl Board {
         }
     }
 
-    /// Returns the attributes whose first value with a NaN was refused since the last call.
+    /// Returns the attributes that had a value with NaN refused for the first time since the last call.
     pub(crate) fn newly_refused(&mut self) -> impl Iterator<Item = AttributeName> {
         self.refused.drain(..)
     }
 
-    /// Updates a module's copies of the values that it reads. An attribute that was removed no longer has a value.
+    /// Updates a module's copies of the values that it reads. A removed attribute has no value any more.
     pub(crate) fn hand(&self, declared: &Declared, wires: &[Option<usize>], ports: &mut Ports) {
         for ((source, wire), copy) in declared.reads.iter().zip(wires).zip(&mut ports.ins) {
             let reading = match source {

@@ -1,4 +1,4 @@
-//! The Modular Engine (paper, section III): modules and plans together make a robot's turns.
+//! The Modular Engine (paper, section III), which runs modules and plans together in the turns of a robot.
 //!
 //! A module implements [`Module`] or [`Background`], and declares the attributes that it publishes and reads with
 //! [`Declare`].

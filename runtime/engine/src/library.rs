@@ -8,7 +8,7 @@ use mdle_host::StopRequest;
 use crate::attribute::is_name;
 use crate::module::{Background, Candidate, Declare, Module, PLAN, ROBOT, Refusal};
 
-/// Modules that each run of a program loads, in order.
+/// The modules that each run of a program loads, in order.
 pub struct Library<Y> {
     makers: Vec<(String, Arc<MakeCandidate<Y>>)>,
 }
@@ -17,7 +17,7 @@ pub struct Library<Y> {
 type MakeCandidate<Y> = dyn Fn(&StopRequest) -> Result<Candidate<Y>, Refusal> + Send + Sync;
 
 impl<Y> Library<Y> {
-    /// Returns a library without modules.
+    /// Creates a library without modules.
     #[must_use]
     pub const fn new() -> Self {
         Self { makers: Vec::new() }
@@ -39,8 +39,8 @@ impl<Y> Library<Y> {
         self.makers.push((name.to_owned(), Arc::new(move |_| Candidate::background(&own, &make))));
     }
 
-    /// Adds a background module with this name that is a child process; `/bin/sh` starts it with this command line. See
-    /// [`Candidate::process`].
+    /// Adds a background module with this name whose values a child process computes; `/bin/sh` starts the process with
+    /// this command line. See [`Candidate::process`].
     pub fn process(&mut self, name: &str, command: &str) {
         let (own, command) = (name.to_owned(), command.to_owned());
         self.makers.push((name.to_owned(), Arc::new(move |request| Candidate::process(&own, &command, request))));

@@ -1,5 +1,5 @@
-//! Replays recorded runs. A [`History`] collects the data that an engine needs for a replay in addition to the robot's
-//! outputs; an engine then repeats these changes without modules, threads or users.
+//! Replays recorded runs. For a replay, an engine needs the robot's outputs and the changes that a [`History`] has
+//! collected. It repeats these changes without modules, threads or users.
 
 mod history;
 mod repeats;

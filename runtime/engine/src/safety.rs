@@ -1,7 +1,7 @@
-//! The safety rules of a run, which apply to every input before it is sent to the robot, whatever the plan is
+//! The safety rules of a run. They apply to every input before it is sent to the robot, regardless of the plan
 //! (docs/src/safety.md).
 //!
-//! [`read()`] reads the rules in a file, [`Conditions`] compiles the conditions of the guards for a robot, and an
+//! [`read()`] reads the rules from a file, [`Conditions`] compiles the conditions of the guards for a robot, and an
 //! [`Envelope`] uses both to decide which input is sent to the robot.
 
 mod conditions;

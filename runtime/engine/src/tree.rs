@@ -1,9 +1,9 @@
 //! The tree of attributes and methods (paper, III-H), which users and programs can read, set and call while a plan
 //! runs.
 //!
-//! A front end runs on its own thread, and turns typed text into a [`Request`] to the [`Hub`]. Values are read from the
-//! snapshot of a turn break; changes wait in a queue until a turn break. The thread that drives the robot has the
-//! [`Desk`], and never waits for a front end.
+//! A front end runs on its own thread, and converts typed text to a [`Request`] to the [`Hub`]. Reading takes values
+//! from the snapshot of a turn break; changes wait in a queue until a turn break. The [`Desk`] belongs to the thread
+//! that drives the robot, which never waits for a front end.
 
 mod desk;
 mod hub;

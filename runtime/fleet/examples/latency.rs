@@ -1,5 +1,5 @@
-//! One robot of a fleet that sends its state 50 times a second: `latency (tcp|router) NUMBER COUNT PORT SECONDS`.
-//! Robot 0 measures the time from the turn in which another robot hands over a state until the state has arrived.
+//! One robot of a fleet that sends its state 50 times a second: `latency (tcp|router) NUMBER COUNT PORT SECONDS`. Robot
+//! 0 measures the time between the turn in which another robot hands over a state and the arrival of this state.
 //!
 //! Robot `n` listens at `PORT + n` for the link over TCP; the router listens at `PORT`.
 #![allow(clippy::print_stdout, reason = "it prints what it measures")]
@@ -15,7 +15,7 @@ use mdle_engine::link::{Link, LinkSettings, State, Tcp, TcpSettings};
 use mdle_runtime::{Meters, Nanos, Pose, Twist};
 
 const TURN: Duration = Duration::from_millis(20);
-/// Time between two checks for states. On average, the measured latencies are too long by half of this time.
+/// Time between two checks for states. On average, the measured latencies are too long by half this time.
 const LOOK: Duration = Duration::from_micros(100);
 /// Time in which the robots connect, before latencies are measured.
 const WARM_UP: Duration = Duration::from_secs(5);
@@ -38,8 +38,8 @@ fn opened(kind: &str, number: usize, count: usize, port: u16) -> Result<Box<dyn 
     Ok(mdle_fleet::open(&RouterSettings { link, router: at(0), file: "latency".into() })?)
 }
 
-/// Latencies of states, in seconds, and for each robot the numbers of its first and last state and the count of states
-/// that arrived.
+/// Latencies of states, in seconds. Also, for each robot, the numbers of its first and its last state, and the number
+/// of states that have arrived.
 #[derive(Default)]
 struct Heard {
     latencies: Vec<f64>,

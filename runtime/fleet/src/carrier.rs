@@ -1,4 +1,5 @@
-//! Runs the thread that keeps a session with the router. It publishes every letter, but only the newest state.
+//! Runs the thread that maintains a session with the router. The thread publishes every letter, but only the newest
+//! state.
 
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -26,7 +27,7 @@ const SPACING: Duration = Duration::from_millis(1);
 /// Interval at which the connection is checked.
 const LOOK: Duration = Duration::from_millis(100);
 
-/// Data of the thread that keeps the session.
+/// Data of the thread that maintains the session.
 pub(crate) struct Carrier {
     name: String,
     router: SocketAddr,
@@ -36,7 +37,7 @@ pub(crate) struct Carrier {
     outbox: Arc<Outbox>,
     /// `true` while the session has a connection to the router.
     is_up: bool,
-    /// `true` once it has been reported that the router cannot be reached.
+    /// `true` if it has already been reported that the router cannot be reached.
     is_known_as_down: bool,
 }
 
@@ -53,8 +54,8 @@ impl Carrier {
         }
     }
 
-    /// Connects and publishes until the run is over. A router that cannot be reached is reported only once, until it
-    /// has been reached again.
+    /// Connects and publishes until the run is over. If the router cannot be reached, this is reported only once, and
+    /// again only after the router has been reached in between.
     pub(crate) fn carry(mut self) {
         while !self.endpoint.is_over() {
             let begun = Instant::now();
@@ -68,7 +69,7 @@ impl Carrier {
         }
     }
 
-    /// Opens a session, and subscribes.
+    /// Opens a session, and subscribes to the frames for this robot.
     ///
     /// # Errors
     /// Fails if the router cannot be reached.
@@ -156,7 +157,7 @@ impl Carrier {
         }
     }
 
-    /// Reports that the router cannot be reached, unless this has been reported already.
+    /// Reports that the router cannot be reached, unless this has already been reported. `failure` is the reason.
     fn is_down(&mut self, failure: &str) {
         if self.is_known_as_down || self.endpoint.is_over() {
             return;

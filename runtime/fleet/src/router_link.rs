@@ -1,5 +1,5 @@
-//! A robot's state link over a router. A turn only hands over a state and takes states that have arrived. A separate
-//! thread publishes, because Zenoh may block.
+//! A robot's state link over a router. In a turn, the robot only hands over its state and takes states that have
+//! arrived. A separate thread publishes the state, because Zenoh may block.
 
 use std::io;
 use std::sync::Arc;

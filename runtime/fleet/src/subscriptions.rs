@@ -9,7 +9,7 @@ use zenoh::{Session, Wait as _};
 
 use crate::topics;
 
-/// Maximum number of reasons for refusals that are reported for one robot.
+/// Maximum number of reasons for refusing messages that are reported for one robot.
 const REASONS: usize = 16;
 
 /// Subscribes to the frames for the robot of this name, until the session ends.
@@ -42,8 +42,8 @@ impl Intake {
         Self(Mutex::new(Counted { source: Source::without_connection(robot), reasons: BTreeSet::new() }))
     }
 
-    /// Passes a message to the endpoint, or refuses it. A key cannot be closed like a connection, so each reason for a
-    /// refusal is reported only once.
+    /// Passes a message to the endpoint, or refuses it. A robot that sends invalid messages cannot be cut off, because
+    /// a key cannot be closed like a connection. Therefore each reason for a refusal is reported only once.
     fn take(&self, sample: &Sample, endpoint: &Endpoint) {
         let mut counted = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let payload = sample.payload();

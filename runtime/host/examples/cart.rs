@@ -1,5 +1,5 @@
-//! A target and a plan in plain Rust: a cart that shuttles on a track. For a real robot, its author writes the first
-//! half, and `mdlec` generates the second half.
+//! A target and a plan in plain Rust: a cart that shuttles on a track. For a real robot, an author writes the first
+//! half of such a file, and `mdlec` generates the second half.
 //!
 //! Run it with `cargo run -p mdle-host --example cart -- --speed max --timeout 20`. The tests of this package run the
 //! program.
@@ -21,7 +21,7 @@ fn main() -> ExitCode {
     run::<CartTarget, _>("shuttle", || Shuttle { forward: true })
 }
 
-/// Output of the cart.
+/// The output of the cart.
 struct Sensed {
     at: Meters,
     track: Meters,
@@ -37,11 +37,11 @@ struct Cart {
     track: Meters,
     period: Duration,
     exchanges: u64,
-    /// Number of the exchange that fails, with the kind of failure.
+    /// Number of the exchange that fails, and the kind of failure; `None` if no exchange fails.
     broken: Option<(u64, Breakdown)>,
     /// Number of the exchange after which the law hangs.
     hung: Option<u64>,
-    /// `true` if the cart writes its commands to standard error.
+    /// `true` if the cart prints its commands to standard error.
     tells: bool,
     /// File of the cart's journal.
     journal: Option<File>,

@@ -1,4 +1,5 @@
-//! Prints the output of an executable that makes no run: help, the answer to an option, or an error in the arguments.
+//! Prints the output of an executable that makes no run: the help text, the answer to an option, or an error in the
+//! arguments.
 
 use std::io::{ErrorKind, Write};
 
@@ -7,7 +8,7 @@ use mdle_runtime::PrintableLines;
 
 use crate::run_end::{self, say};
 
-/// Prints help, or the error in the arguments; returns the exit status.
+/// Prints the help text or the error in the arguments; returns the exit status.
 pub(crate) fn unparsed<'o>(error: clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, err: &mut dyn Write) -> u8 {
     let error = with_near_option(error);
     if error.use_stderr() {
@@ -29,8 +30,8 @@ pub(crate) fn print_answer(answer: &str, out: &mut dyn Write, err: &mut dyn Writ
     }
 }
 
-/// Removes clap's suggestion for an unknown option unless at most a third of the letters differ: `--period`, for
-/// example, is a useless suggestion for `--speed`, which only simulated robots have.
+/// Removes clap's suggestion for an unknown option if more than a third of the characters differ. For example,
+/// `--period` would be a useless suggestion for `--speed`, an option that only simulated robots have.
 fn with_near_option(mut error: clap::Error) -> clap::Error {
     let text = |kind| match error.get(kind) {
         Some(ContextValue::String(text)) => text.trim_start_matches('-').split('=').next().unwrap_or_default(),
@@ -50,7 +51,7 @@ mod tests {
 
     use super::*;
 
-    /// A stream in which every write fails.
+    /// A stream to which every write fails.
     struct Failing(ErrorKind);
 
     impl Write for Failing {

@@ -9,9 +9,9 @@ use crate::call::Call;
 use crate::target_options::TargetOptions;
 use crate::{Program, Quantity, paths, required, views};
 
-/// Minimum period: a turn must be long enough for the exchange.
+/// Minimum period of a turn; a turn must be long enough for the exchange with the robot.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
-/// Maximum period: a robot with a command per minute is not controlled.
+/// Maximum period of a turn; with less than a command per minute, a robot is not controlled.
 const PERIOD_MOST: Duration = Duration::from_secs(60);
 /// Maximum timeout, about 31 years: far below the limit of nanoseconds in 64 bits.
 const TIMEOUT_MOST: Duration = Duration::from_secs(1_000_000_000);
@@ -38,9 +38,9 @@ const TIMING: &str = "On a real robot, SIGUSR1 prints how late turns began and h
 pub(crate) struct SharedOptions {
     /// Time from the start of a turn to the start of the next.
     pub(crate) period: Duration,
-    /// Time of the plan after which the run is stopped.
+    /// Maximum time of the plan; the run is stopped after this time.
     pub(crate) timeout: Option<Duration>,
-    /// Number of turns after which the run is stopped; at least 1.
+    /// Maximum number of turns, at least 1; the run is stopped after this number.
     pub(crate) turns: Option<u64>,
     /// File of the run log.
     pub(crate) log: Option<PathBuf>,
@@ -50,8 +50,8 @@ pub(crate) struct SharedOptions {
     pub(crate) path: Option<PathBuf>,
 }
 
-/// Returns the command-line parser of a program for this target. The usage line begins with the words with which the
-/// program was called, or with the plan's name if these words are unknown.
+/// Returns the command-line parser of a program for this target. The usage line begins with the words by which the
+/// program was called; if these words are unknown, it begins with the plan's name.
 pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call) -> Command {
     let seconds = target.period.as_secs_f64();
     let name = program.plan;
@@ -106,7 +106,7 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call)
     with_statuses((target.arguments)(if target.fastest.is_some() { paths::arguments(command) } else { command }))
 }
 
-/// Returns `command`, which must have all its options, with the exit statuses added to its help.
+/// Adds the exit statuses to the help text of `command`, which must already have all its options.
 fn with_statuses(command: Command) -> Command {
     let has_runs = command.get_arguments().any(|argument| argument.get_id() == "runs");
     let statuses = STATUSES.into_iter().filter(|(number, _)| *number != "1" || has_runs);
@@ -116,7 +116,7 @@ fn with_statuses(command: Command) -> Command {
         .after_long_help(format!("Exit status:\n{lines}{STOPPED} {TIMING}"))
 }
 
-/// Reads the common options.
+/// Reads the values of the options that all targets share.
 pub(crate) fn options(target: &TargetOptions, matches: &ArgMatches) -> SharedOptions {
     SharedOptions {
         period: matches.get_one("period").copied().unwrap_or(target.period),

@@ -1,4 +1,4 @@
-//! A writer that never makes a robot wait: a separate thread writes the text that the turns produce.
+//! A writer for which a robot never has to wait: a separate thread writes the text that the turns produce.
 
 #[cfg(test)]
 mod tests;
@@ -16,32 +16,32 @@ use crate::patience::{AT_THE_END, Patience};
 pub(crate) const STACK: usize = 128 * 1024;
 /// Maximum size, in bytes, of the text that is queued for a slow reader.
 const WAITING: usize = 1 << 20;
-/// Size, in bytes, from which text is passed to the thread without a flush.
+/// Size, in bytes, from which collected text is passed to the thread even without a flush.
 const PIECE: usize = 1 << 16;
 /// Maximum size of a single write, in bytes. Each completed write shows that the reader has not stalled.
 const CHUNK: usize = 1 << 13;
-/// Maximum time without progress on a file that must be complete, while a robot is driven.
+/// Maximum time without progress on a file that must be complete, while a robot is being driven.
 const LAG: Duration = Duration::from_secs(5);
 /// Maximum wait between two checks of the deadline.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Policy for text that does not fit into the queue of a slow reader while a robot is driven.
+/// Policy for text that does not fit into the queue of a slow reader while a robot is being driven.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Keeps {
-    /// Text for people: it is dropped, and a line reports that.
+    /// Text for people. Text that does not fit is dropped, and a line reports this.
     WhatIsRead,
-    /// A file that must be complete: a full queue is an error.
+    /// A file that must be complete. A full queue is an error.
     All,
 }
 
-/// A writer whose `flush` returns at once while a robot is driven. At other times, `flush` waits until all text is
-/// written, but at most as long as [`Patience`] permits; dropping the writer waits in the same way.
+/// A writer whose `flush` returns at once while a robot is being driven. At other times, `flush` waits until all text
+/// is written, but at most as long as [`Patience`] permits. Dropping the writer waits in the same way.
 #[derive(Debug)]
 pub(crate) struct Outlet {
     piece: Vec<u8>,
     keeps: Keeps,
     patience: Patience,
-    /// `true` if text has been dropped since the last text that was passed to the thread.
+    /// `true` if text has been dropped since text was last passed to the thread.
     lost: bool,
     /// `true` once the writer no longer waits for the reader.
     given_up: bool,
@@ -59,7 +59,7 @@ struct Queue {
     pieces: VecDeque<Vec<u8>>,
     /// Number of bytes that are queued or being written.
     bytes: usize,
-    /// Time at which the reader last accepted text, or at which an idle thread last received text.
+    /// Time at which the reader last accepted text; if the thread was idle, the time at which it received new text.
     moved: Instant,
     is_closed: bool,
     /// Error that ended the thread.
@@ -75,8 +75,8 @@ impl WriterQueue {
 }
 
 impl Queue {
-    /// Appends a piece of text, or returns it as the error if the queue has no space. An empty queue has space for a
-    /// piece of any length.
+    /// Appends a piece of text. If the queue has no space, returns the piece as the error. An empty queue has space for
+    /// a piece of any length.
     fn push(&mut self, piece: Vec<u8>) -> Result<(), Vec<u8>> {
         if self.bytes > 0 && self.bytes.saturating_add(piece.len()) > WAITING {
             return Err(piece);
@@ -153,7 +153,7 @@ impl Outlet {
         if lags { Err(too_slow(LAG)) } else { Ok(()) }
     }
 
-    /// Handles text that does not fit into the queue: drops it, or returns an error.
+    /// Handles text that does not fit into the queue: either drops it or returns an error.
     fn without_room(&mut self) -> io::Result<()> {
         match self.keeps {
             Keeps::WhatIsRead if self.is_driving() => {
@@ -169,8 +169,8 @@ impl Outlet {
         }
     }
 
-    /// Waits until all text is written, at most as long as the run's phase permits; does not wait while a robot is
-    /// driven.
+    /// Waits until all text is written, for at most the time that the run's phase permits. Does not wait while a robot
+    /// is being driven.
     fn drain(&mut self) -> io::Result<()> {
         let shared = Arc::clone(&self.shared);
         let begun = Instant::now();
@@ -188,7 +188,7 @@ impl Outlet {
         }
     }
 
-    /// Returns `true` while a robot is driven, which must not wait.
+    /// Returns `true` while a robot is being driven; the robot must not wait for the writer.
     fn is_driving(&self) -> bool {
         self.patience.limit() == Some(Duration::ZERO)
     }

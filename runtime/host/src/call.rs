@@ -1,4 +1,4 @@
-//! Command line by which a program that runs a plan was called: the words of its name, and its options.
+//! The command line by which a program that runs a plan was called: the words of the program's name, and the options.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use mdle_record::SafetyTexts;
 /// Words of the command line by which a program that runs a plan was called.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Call {
-    /// Words before the options, beginning with the program's own name, such as `./dock` or `mdle run dock.mdle
+    /// Words before the options, which begin with the program's own name, such as `./dock` or `mdle run dock.mdle
     /// --target sim`. Usage and summaries show these words.
     pub words: Vec<OsString>,
     /// Options after these words.
@@ -21,18 +21,18 @@ pub struct Call {
     pub later_path: Option<String>,
 }
 
-/// Data about a plan that a record contains, if the program knows them.
+/// Data about a plan that a record contains. Parts that the program does not know are empty.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RecordedPlan {
     /// Name and text of each file of the plan, the plan's own file first; empty for an executable, which has no texts.
     pub files: Vec<(String, String)>,
-    /// Description of what influences the inputs besides the plan and the robot's outputs, such as safety rules; empty
-    /// if nothing does.
+    /// Description of the influences on the inputs other than the plan and the robot's outputs, such as safety rules;
+    /// empty if there are none.
     pub beside: String,
-    /// Safety rules of the run, if there are any.
+    /// Safety rules of the run; `None` if it has no safety rules.
     pub safety: Option<SafetyTexts>,
-    /// Words that determine the run but are not part of the call, such as the target and the modules from a settings
-    /// file.
+    /// Words that influence the run but are not part of the command line, such as the target and the modules from a
+    /// settings file.
     pub settings: Vec<String>,
 }
 
@@ -50,20 +50,21 @@ impl Call {
         }
     }
 
-    /// Returns the words with which the usage line begins; `None` if the call has no words besides the name of the
-    /// program.
+    /// Returns the words with which the usage line begins; `None` if the call consists of the program's name and
+    /// options only.
     pub(crate) fn several_words(&self) -> Option<String> {
         let (program, others) = self.words.split_first().filter(|(_, others)| !others.is_empty())?;
         let name = Path::new(program).file_name().unwrap_or(program);
         Some([&[name.to_owned()], others].concat().join(" ".as_ref()).to_string_lossy().into_owned())
     }
 
-    /// Returns the name of the program and the options, as a command-line parser expects them.
+    /// Returns the name of the program and the options, in the form that a command-line parser expects.
     pub(crate) fn arguments(&self) -> impl Iterator<Item = &OsString> {
         self.words.iter().take(1).chain(&self.options)
     }
 
-    /// Returns the words as they are typed in a shell; the name of the plan if the program was called without a name.
+    /// Returns the words in the form in which a user types them in a shell. If the program was called without a name,
+    /// returns the name `plan` of the plan.
     pub(crate) fn command(&self, plan: &str) -> String {
         let words: Vec<String> = self.words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
         if words.is_empty() { quoted(plan) } else { words.join(" ") }
@@ -78,7 +79,7 @@ impl Call {
     }
 }
 
-/// Options with a value that do not influence a run: they name files that the run writes, or processors.
+/// Options that take a value and do not influence a run: they name files that the run writes, or processors.
 const BESIDE: [&str; 8] =
     ["--log", "--plot", "--record", "--trail", "--trips", "--record-path", "--recorded-paths", "--threads"];
 
@@ -95,7 +96,7 @@ pub fn determining(options: &[OsString]) -> impl Iterator<Item = OsString> {
     others.cloned()
 }
 
-/// Returns a word as it is typed in a shell, in quotes if necessary.
+/// Returns a word in the form in which a user types it in a shell, with quotes if necessary.
 #[must_use]
 pub fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./,=:+@%".contains(letter);

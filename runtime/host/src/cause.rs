@@ -1,5 +1,5 @@
-//! Formats transitions and places of atoms for reports. A transition is shown by the operands that fired, as written in
-//! the plan, with their values and lines.
+//! Formats transitions and the positions of atoms for reports. A transition is shown by the operands that fired, as
+//! written in the plan, with their values and lines.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ use crate::passes::{Passes, outwards};
 use crate::position::Texts;
 use crate::transitions::Operand;
 
-/// Cause for which a scope ended, in the words of a report: `r1 = 0.38 m < 40cm (wall.mdle:7)`.
+/// Cause of the end of a scope, as text for a report: `r1 = 0.38 m < 40cm (wall.mdle:7)`.
 pub struct CauseText<'a> {
     /// Plan that contains the scope.
     pub plan: &'a dyn Texts,
@@ -34,14 +34,14 @@ impl fmt::Display for CauseText<'_> {
     }
 }
 
-/// Returns the cause of a transition of `plan` in the words of a report, with the values of the operands that fired:
-/// `r1 = 0.38 m < 40cm (wall.mdle:7)`.
+/// Returns the cause of a transition of `plan` as text for a report, with the values of the operands that fired: `r1 =
+/// 0.38 m < 40cm (wall.mdle:7)`.
 #[must_use]
 pub fn cause_words(plan: &impl Plan, transition: &Transition, operands: &[Operand]) -> String {
     CauseText { plan, transition, operands }.to_string()
 }
 
-/// Returns the place of an atom in the words of a report: its line, the names of its enclosing scopes and the passes of
+/// Returns the position of an atom as text for a report: its line, the names of its enclosing scopes and the passes of
 /// loops.
 #[must_use]
 pub fn place(plan: &dyn Texts, passes: &Passes, atom: u32) -> String {

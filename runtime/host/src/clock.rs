@@ -1,8 +1,8 @@
 //! Clock of a run, which determines the start and the time of each turn (docs/src/reference/semantics.md, 3.1).
 //!
-//! Turns begin at absolute deadlines, so that lateness does not add up. With a real robot, turns that were missed are
-//! skipped: the robot is never sent a burst of inputs. In stepped time no turn is skipped: late turns follow each other
-//! at once.
+//! Turns begin at absolute deadlines, so delays do not add up. With a real robot, missed turns are skipped, so the
+//! robot never receives a burst of inputs. In stepped time, no turn is skipped: late turns follow each other without a
+//! pause.
 
 #[cfg(test)]
 mod tests;
@@ -19,11 +19,11 @@ use crate::{Pace, Time};
 
 /// Maximum sleep between two checks for signals.
 const SLICE: Duration = Duration::from_millis(20);
-/// Maximum lateness that stepped time catches up, in nanoseconds. After a longer delay, such as a suspension of the
-/// process, turns continue from the current time.
+/// Maximum delay, in nanoseconds, that stepped time makes up for. After a longer delay, for example because the process
+/// was suspended, turns continue from the current time.
 const CATCH_UP: u64 = 250_000_000;
 
-/// Maximum delay of a turn, if the robot does not limit the time without a command.
+/// Maximum delay of a turn if the robot does not limit the time without a command.
 const GAP: Duration = Duration::from_secs(2);
 
 /// Clock of a run.
@@ -33,8 +33,8 @@ pub(crate) struct Clock<I> {
     time: Time,
     /// Period of a turn in nanoseconds; at least 1.
     period: u64,
-    /// Start of turn 0, or of the turn in which the pace was changed, in real nanoseconds. In stepped time, lateness
-    /// that is not caught up is added.
+    /// Start of turn 0, or of the turn in which the pace was changed last, in real nanoseconds. In stepped time, delays
+    /// that later turns do not make up for are added.
     origin: u64,
     /// Real time of the first output, in nanoseconds: time 0 of the plan.
     zero: u64,
@@ -77,7 +77,7 @@ impl<I: Instants> Clock<I> {
         Nanos::ZERO
     }
 
-    /// Returns the plan's time of the output that has just been read.
+    /// Returns the time, on the plan's clock, of the output that has just been read.
     pub(crate) fn taken(&mut self) -> Nanos {
         match self.time {
             Time::Wall => Nanos(nanos(self.instants.now()).saturating_sub(self.zero)),
@@ -85,8 +85,8 @@ impl<I: Instants> Clock<I> {
         }
     }
 
-    /// Changes the pace of stepped time: the next turn begins one period after now, at the new pace. The wall clock has
-    /// only one pace.
+    /// Changes the pace of stepped time; the next turn begins one period from now, at the new pace. Has no effect on
+    /// the wall clock, which has only one pace.
     pub(crate) fn set_pace(&mut self, pace: Pace) {
         let Time::Stepped(before) = &mut self.time else { return };
         *before = pace;
@@ -94,7 +94,7 @@ impl<I: Instants> Clock<I> {
         self.paced_from = self.place;
     }
 
-    /// Returns the lateness and the durations of the turns, if a robot in real time has made any turns.
+    /// Returns the lateness and the durations of the turns; `None` in stepped time, and before the first turn.
     pub(crate) fn timing(&self) -> Option<&Timing> {
         Some(&self.timing).filter(|timing| self.time == Time::Wall && timing.has_turns())
     }
@@ -130,7 +130,8 @@ impl<I: Instants> Clock<I> {
         }
     }
 
-    /// Advances to the next turn; returns its start in real nanoseconds, or `None` if it starts without a wait.
+    /// Advances to the next turn. Returns the start of this turn in real nanoseconds; `None` if it starts without a
+    /// wait.
     fn deadline(&mut self) -> Option<u64> {
         self.place = self.place.saturating_add(1);
         match self.time {

@@ -1,6 +1,7 @@
-//! The control cycle: exchange, time, a turn, and the wait for the next turn (docs/src/reference/semantics.md, 5.1).
+//! The control cycle: exchange with the robot, reading of the time, turn, and wait for the next turn
+//! (docs/src/reference/semantics.md, 5.1).
 //!
-//! In an executable, only a plan takes part in a turn; in other programs, an engine runs modules as well. For both, the
+//! In an executable, only a plan takes part in a turn; in other programs, an engine also runs modules. For both, the
 //! cycle handles exchange, limits, signals and the end of a run.
 
 use std::time::Duration;
@@ -14,10 +15,11 @@ use crate::run_end::RunEnd;
 use crate::signals::Signals;
 use crate::timing::Timing;
 
-/// Limits at which a run ends although its plan has not ended.
+/// Limits that end a run before its plan has ended.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RunLimits {
-    /// Time of the run at which the run ends. The turn at this time is still made, because the plan may end in it.
+    /// Time of the run at which the run ends. The turn at exactly this time is still made, because the plan may end in
+    /// it.
     pub(crate) timeout: Option<Duration>,
     /// Number of turns after which the run ends.
     pub(crate) turns: Option<u64>,
@@ -32,15 +34,15 @@ pub(crate) enum TurnEnd {
     Over,
 }
 
-/// A robot, with the code that makes its turns.
+/// A robot, together with the code that makes its turns.
 pub(crate) trait Turns {
     /// Sends the input of the last turn, or the null input before the first turn, and reads the next output.
     ///
     /// # Errors
     /// Returns a message for the operator if the robot has a fault.
     fn exchange(&mut self) -> Result<(), String>;
-    /// Makes turn `number`, counted from 0, with the output that was read at `t`. `timing` is about the turns before,
-    /// if a robot in real time has made any.
+    /// Makes turn `number`, counted from 0, with the output that was read at `t`. `timing` describes the previous
+    /// turns; `None` in stepped time, and before the first turn.
     ///
     /// # Errors
     /// Returns the reason if the run must end although the robot has no fault.
@@ -49,9 +51,9 @@ pub(crate) trait Turns {
     fn pace(&mut self) -> Option<Pace> {
         None
     }
-    /// Reports the lateness and the duration of turns, after a request by SIGUSR1.
+    /// Reports the lateness and the duration of turns, because SIGUSR1 requested this report.
     fn tell_timing(&mut self, timing: &Timing);
-    /// Handles the end of the cycle, whose last turn was at `t`; the robot has not been stopped yet.
+    /// Handles the end of the cycle. The last turn was at time `t`, and the robot has not been stopped yet.
     fn ended(&mut self, ending: &RunEnd, t: Nanos, timing: Option<&Timing>);
 }
 
@@ -103,8 +105,8 @@ pub(crate) fn cycle<I: Instants>(
 }
 
 impl RunLimits {
-    /// Returns the limit that a run has reached after `turns` turns, the last of them at time `t`, if its plan has not
-    /// ended.
+    /// Returns the limit that a run has reached after `turns` turns; the last turn was at time `t`, and the plan has
+    /// not ended.
     fn reached(&self, turns: u64, t: Nanos) -> Option<RunEnd> {
         let timeout = self.timeout.filter(|limit| t.0 >= nanos(*limit)).map(RunEnd::Timeout);
         timeout.or(self.turns.filter(|limit| turns >= *limit).map(RunEnd::Turns))

@@ -1,5 +1,5 @@
-//! Interface to a plan on its robot that does not depend on the types of the plan and the robot. The host is therefore
-//! compiled once, and each executable compiles only its own turn.
+//! Interface to a plan on its robot, independent of the types of the plan and the robot. The host is therefore compiled
+//! only once; each executable compiles only its own turn.
 
 use std::any::Any;
 use std::time::Duration;
@@ -17,7 +17,7 @@ use crate::timing::Timing;
 use crate::transitions::Transitions;
 use crate::{Break, BreakOrders, Intervention, SettingsOf, Supervisor};
 
-/// A robot with the plan that drives it: exchanges and turns alternate, beginning with an exchange.
+/// A robot with the plan that drives it. Exchanges and turns alternate, and an exchange comes first.
 pub(crate) trait Drive {
     /// Sends the input of the last turn, or the null input before the first turn, and reads the next output.
     ///
@@ -36,7 +36,8 @@ pub(crate) trait Drive {
     fn stop(&mut self) -> Result<(), String>;
     /// Returns the value of [`Robot::longest_gap`].
     fn longest_gap(&self) -> Option<Duration>;
-    /// Returns the heading and the speed of the robot in its last output, if there is an output and paths are recorded.
+    /// Returns the heading and the speed of the robot in its last output. Returns `None` before the first output, and
+    /// if no path is recorded.
     fn motion(&self) -> Option<(Radians, MetersPerSecond)>;
     /// Returns the last output, for views of the run; `None` if there is no output, or if it is not a [`Sensed`].
     fn sensed(&self) -> Option<&Sensed>;
@@ -47,42 +48,44 @@ pub(crate) trait Drive {
     fn record(&mut self);
     /// Removes and returns the changes that influenced the last turn, besides its output.
     fn take_changes(&mut self) -> Vec<RecordedChange>;
-    /// Makes turn `number` with the last output at time `t`; the first turn begins the plan.
+    /// Makes turn `number` with the last output, which was read at time `t`. The first turn begins the plan.
     ///
     /// # Errors
     /// Returns the reason if the run must end although the robot has no fault.
     fn turn(&mut self, t: Nanos, number: u64, transitions: &mut Transitions) -> Result<Turn<()>, RunEnd>;
     /// Calls `say` with each message for the operator since the last call.
     fn messages(&mut self, say: &mut dyn FnMut(&str));
-    /// Returns the robot's observer, if it has an observer, and the position in the plan, if the plan has begun.
+    /// Returns the robot's observer and the position in the plan. The observer is `None` if the robot has none, and the
+    /// position is `None` if the plan has not begun.
     fn parts(&mut self) -> (Option<&mut dyn Observer>, Option<&dyn Position>);
-    /// Returns the time of the run at which the plan began.
+    /// Returns the time at which the plan began, on the clock of the run.
     fn zero(&self) -> Nanos;
     /// Returns the supervisor's intervention in the last turn.
     fn intervention(&self) -> Option<Intervention<'_>>;
     /// Returns the requests that the supervisor has fulfilled since the last call.
     fn take_requests(&mut self) -> Vec<String>;
-    /// Returns the number of the current plan, from 1, and the reason why it has replaced another plan.
+    /// Returns the number of the current plan, counting from 1, and the reason why this plan has replaced another one.
     fn plan(&self) -> (u64, &str);
-    /// Ends the plan because of a rule of the supervisor; returns `true` if another plan continues.
+    /// Ends the plan, as the rule `rule` of the supervisor demands. Returns `true` if another plan continues.
     fn ended_by(&mut self, rule: &str) -> bool;
-    /// Returns how the run continues, after a turn in which the current plan has ended.
+    /// Returns the continuation of the run after a turn in which the current plan has ended.
     fn after_plan(&mut self) -> AfterPlan;
-    /// Calls the supervisor, if there is one, at a break: after this number of turns, the last of them at this time,
-    /// with `true` if the plan is over. `timing` is about the turns, in real time.
+    /// Calls the supervisor, if there is one, at the break between two turns. `moment` contains the number of turns so
+    /// far, the time of the last turn, and `true` if the plan is over. `timing` describes the turns; `None` in stepped
+    /// time.
     fn at_break(
         &mut self,
         moment: (u64, Nanos, bool),
         report: &ReportWriter<'_>,
         timing: Option<&Timing>,
     ) -> BreakOrders;
-    /// Passes the last state of a run that ends before its plan, after `turns` turns, to the supervisor, if there is
-    /// one.
+    /// Passes the last state of a run to the supervisor, if there is one. The run has ended before its plan, after
+    /// `turns` turns.
     fn at_end(&mut self, turns: u64, t: Nanos, report: &ReportWriter<'_>, timing: Option<&Timing>);
-    /// Passes the reason for the end of a run, and the exit status, to the supervisor, if there is one.
+    /// Tells the supervisor, if there is one, why the run has ended, and the exit status.
     fn ended(&mut self, why: &str, status: u8);
 
-    /// Returns the robot's observer, if it has an observer.
+    /// Returns the robot's observer; `None` if the robot has no observer.
     fn observer(&mut self) -> Option<&mut dyn Observer> {
         self.parts().0
     }
@@ -95,15 +98,15 @@ pub(crate) struct Exact<'y> {
     pub(crate) y: &'y Sensed,
     /// Input that the plan requested.
     pub(crate) asked: Twist,
-    /// Input that is sent.
+    /// Input that the robot is sent.
     pub(crate) sent: Twist,
 }
 
-/// A robot, with the pilot that drives it.
+/// A robot with the pilot that drives it.
 pub(crate) struct PilotOnRobot<'p, R: Robot, B: Pilot> {
     robot: R,
     observer: Observes<R>,
-    /// Function that returns the robot's speed in an output, if paths are recorded.
+    /// Function that returns the robot's speed in an output; `None` if no path is recorded.
     speed: Option<Speed<R>>,
     helm: Helm<'p, B>,
     /// Function that returns the settings of the robot, for the supervisor.
@@ -123,7 +126,7 @@ where
         Self { robot, observer, speed, helm, settings: None, output: None }
     }
 
-    /// Sets the settings of the robot that the supervisor can change.
+    /// Sets the function that returns the robot's settings; the supervisor can change these settings.
     pub(crate) fn with_settings(self, settings: Option<SettingsOf<R>>) -> Self {
         Self { settings, ..self }
     }

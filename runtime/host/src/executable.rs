@@ -1,4 +1,4 @@
-//! Interface to the target and the plan of an executable that does not depend on their types.
+//! Interface to the target and the plan of an executable, independent of their types.
 
 use std::marker::PhantomData;
 use std::os::fd::BorrowedFd;
@@ -20,13 +20,14 @@ const NO_EARS: &str = "give `--ears FILE.wav`, or `--ears -` for the pipe of a r
 
 /// The target and the plan of an executable.
 pub(crate) trait Executable: Sync {
-    /// Returns the target's options and their defaults.
+    /// Returns the options of the target, with their defaults.
     fn target(&self) -> TargetOptions;
-    /// Returns the stream of the report and of messages in a session; `None` if there is no session.
+    /// Returns the stream to which a session writes reports and messages; `None` if there is no session.
     fn session(&self) -> Option<BorrowedFd<'_>>;
-    /// Creates a plan, for access to its texts.
+    /// Creates a plan whose texts can be read.
     fn plan(&self) -> Box<dyn Texts + '_>;
-    /// Opens the robot with [`Target::connect`], the plan that will drive it, and the paths that the plan replays.
+    /// Connects to the robot with [`Target::connect`]. Returns it with the plan that will drive it and the paths that
+    /// the plan replays.
     ///
     /// # Errors
     /// Fails if [`Target::connect`] fails.
@@ -37,7 +38,7 @@ pub(crate) trait Executable: Sync {
         request: &StopRequest,
         store: PathStore,
     ) -> Result<Box<dyn Drive + '_>, Refusal>;
-    /// Returns several runs with [`Observation::batch`], if the options request more than one run.
+    /// Returns the runs of a batch, created with [`Observation::batch`]; `None` if the options request a single run.
     ///
     /// # Errors
     /// Fails if an option is invalid, or if a fault has occurred.
@@ -45,7 +46,7 @@ pub(crate) trait Executable: Sync {
     -> Result<Option<BatchRuns<'_>>, Refusal>;
 }
 
-/// Executable of a plan for the target `T`. The pilot `B` computes the inputs of its runs.
+/// Executable of a plan for the target `T`. The pilot `B` computes the inputs of each run.
 pub(crate) struct PlanOnTarget<'p, 's, T, P, B: Pilot> {
     /// Function that creates the plan.
     plan: &'p (dyn Fn() -> P + Sync),
@@ -63,7 +64,7 @@ where
         Self { plan, pilot, supervision: None, target: PhantomData }
     }
 
-    /// Sets the supervisor between the pilot and the robot.
+    /// Sets the supervisor that acts between the pilot and the robot.
     pub(crate) fn supervised(self, supervision: Option<Supervision<'s, B>>) -> Self {
         Self { supervision, ..self }
     }
@@ -71,7 +72,7 @@ where
     /// Returns the robot with the pilot that drives it, its supervisor, and the paths that the plan replays.
     ///
     /// # Errors
-    /// Fails if a module listens, but the robot has no sound.
+    /// Fails if a module needs sound and the robot has no microphones.
     fn drive(
         &self,
         mut robot: T::Robot,

@@ -1,4 +1,4 @@
-//! Reads files that an operator names: regular files up to a maximum size, but never a pipe, because reading it would
+//! Reads files that an operator names. Only regular files up to a maximum size are read, because reading a pipe would
 //! wait for a writer.
 
 use std::fs::{self, FileType, OpenOptions};
@@ -41,7 +41,7 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(read_file(path, most)?).map_err(|_| io::Error::other("it is not UTF-8 text"))
 }
 
-/// Returns an error with the type of the file unless it is a regular file.
+/// Checks that a file is regular; the error names the type of the file.
 fn regular(kind: FileType) -> io::Result<()> {
     let what = if kind.is_file() {
         return Ok(());

@@ -1,8 +1,9 @@
-//! Holds back a report until the live view has left the screen. Only the last part of a very long report is shown.
+//! Holds back a report until the live view has left the screen. If the report is very long, only its last part is
+//! shown.
 
 use std::io::{self, Write};
 
-/// Maximum size of the stored text, in bytes: beyond it, the first half is dropped.
+/// Maximum size of the stored text, in bytes. If the text is longer, its first half is dropped.
 const MOST: usize = 1 << 20;
 
 /// A writer that stores all text until it is flushed.
@@ -13,7 +14,7 @@ pub(crate) struct HeldReport<W> {
 }
 
 impl<W: Write> HeldReport<W> {
-    /// Returns an empty writer, which will write to `to` when it is flushed.
+    /// Creates an empty writer, which will write to `to` when it is flushed.
     pub(crate) fn new(to: W) -> Self {
         Self { to, text: Vec::new(), cut: false }
     }

@@ -1,4 +1,5 @@
-//! A pilot with its supervisor: determines the input that a robot is sent in each turn, in a run and in a replay.
+//! A pilot with its supervisor: together they determine the input that a robot is sent in each turn, in a run and in a
+//! replay.
 
 use std::any::Any;
 use std::fmt;
@@ -16,17 +17,17 @@ pub struct Helm<'p, B: Pilot> {
     supervised: Option<Supervised<'p, B>>,
     /// Time of the last turn.
     t: Nanos,
-    /// Last requested input, if it is a [`Twist`].
+    /// Input that the plan requested last; `None` if it is not a [`Twist`].
     asked: Option<Twist>,
     /// Input that is sent next.
     input: PilotInput<B>,
 }
 
-/// The supervisor of a run, with the plans to which it may divert.
+/// The supervisor of a run, with the plans that it may start in place of the running plan.
 pub struct Supervised<'p, B: Pilot> {
     /// Supervisor of the run.
     pub supervisor: Box<dyn Supervisor<B> + 'p>,
-    /// Function that creates the plan with this number; it returns `None` if there is no such plan.
+    /// Function that creates the plan with this number; returns `None` if there is no such plan.
     pub diversions: Box<dyn Fn(usize) -> Option<B::Plan> + 'p>,
 }
 
@@ -46,7 +47,7 @@ impl<'p, B> Helm<'p, B>
 where
     B: Pilot<Plan: Plan<Input: 'static>>,
 {
-    /// Returns a pilot with its supervisor, before the first turn.
+    /// Creates a pilot with its supervisor, before the first turn.
     #[must_use]
     pub fn new(pilot: B, supervised: Option<Supervised<'p, B>>) -> Self {
         Self { pilot, supervised, t: Nanos::ZERO, asked: None, input: PilotInput::<B>::default() }
@@ -79,7 +80,8 @@ where
         Ok(kind)
     }
 
-    /// Sets the input that is sent next to `asked`, which the supervisor may change first if there is an output.
+    /// Determines the input that is sent next: `asked`, unless the supervisor changes it. The supervisor is asked only
+    /// if there is an output.
     pub(crate) fn send(&mut self, asked: PilotInput<B>, y: Option<&PilotOutput<B>>) {
         self.asked = (&asked as &dyn Any).downcast_ref().copied();
         self.input = match (&mut self.supervised, y) {
@@ -88,7 +90,7 @@ where
         };
     }
 
-    /// Returns the plan to which the last turn has diverted.
+    /// Returns the plan that the supervisor has started in the last turn; `None` if it has started none.
     fn diversion(&self) -> Option<B::Plan> {
         match self.intervention()?.verdict {
             Verdict::Diverted(plan) => (self.supervised.as_ref()?.diversions)(plan),
@@ -102,7 +104,7 @@ where
         &self.input
     }
 
-    /// Returns the last requested input, if it is a [`Twist`].
+    /// Returns the input that the plan requested last; `None` if it is not a [`Twist`].
     #[must_use]
     pub fn asked(&self) -> Option<Twist> {
         self.asked
@@ -119,7 +121,7 @@ where
         &self.pilot
     }
 
-    /// Returns the pilot for changes between two turns.
+    /// Returns the pilot, so that it can be changed between two turns.
     pub fn pilot_mut(&mut self) -> &mut B {
         &mut self.pilot
     }
@@ -130,7 +132,7 @@ where
         supervised.as_mut().map(|supervised| (&mut *supervised.supervisor, pilot, &*input))
     }
 
-    /// Returns the supervisor, if there is one, for changes between two turns.
+    /// Returns the supervisor, so that it can be changed between two turns; `None` if there is no supervisor.
     pub fn supervisor_mut(&mut self) -> Option<&mut (dyn Supervisor<B> + 'p)> {
         self.supervised.as_mut().map(|supervised| &mut *supervised.supervisor)
     }

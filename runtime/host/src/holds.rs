@@ -1,17 +1,18 @@
-//! Counts how often each safety rule holds the robot, so that a report shows only the first times.
+//! Counts how often each safety rule holds the robot back, so that a report shows only the first times.
 
 use mdle_runtime::Nanos;
 
-/// Maximum number of holds of a rule that a report shows, until the rule pauses for [`PAUSE`].
+/// Maximum number of times that a report shows a rule holding the robot, until the rule pauses for [`PAUSE`].
 const REPORTED: u32 = 3;
-/// Time after which a report shows a rule again, counted from when the rule last began to hold the robot.
+/// Time after which a report shows a rule again. It is counted from the last time at which the rule began to hold the
+/// robot.
 const PAUSE: Nanos = Nanos(10_000_000_000);
 
 /// Counters of the safety rules that have held the robot.
 #[derive(Debug, Default)]
 pub(crate) struct Holds {
     rules: Vec<HoldsOfRule>,
-    /// Index of the rule that last held the robot.
+    /// Index of the rule that held the robot last.
     last: usize,
 }
 
@@ -25,8 +26,8 @@ struct HoldsOfRule {
 }
 
 impl Holds {
-    /// Records that a rule begins to hold the robot at time `t`. Returns text to append to the report's line about it;
-    /// `None` if the report shows no line.
+    /// Records that a rule begins to hold the robot at time `t`. Returns the text to append to the report's line about
+    /// this; `None` if the report shows no line.
     pub(crate) fn begins(&mut self, rule: &str, t: Nanos) -> Option<&'static str> {
         let known = self.rules.iter().position(|holds| holds.rule == rule);
         self.last = known.unwrap_or(self.rules.len());
@@ -44,7 +45,7 @@ impl Holds {
         }
     }
 
-    /// Returns `true` if the report announces the end of the latest hold, when the plan continues.
+    /// Returns `true` if the report will announce the end of the latest hold, at which the plan continues.
     pub(crate) fn is_followed(&self) -> bool {
         self.rules.get(self.last).is_none_or(|holds| holds.count < REPORTED)
     }

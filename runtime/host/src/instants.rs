@@ -6,22 +6,22 @@ use rustix::time::{ClockId, clock_gettime};
 
 use crate::scheduling;
 
-/// Source of real time, which a test can control.
+/// Source of real time; tests use a source that they control.
 pub(crate) trait Instants {
     /// Returns the time since a fixed point in time before the first turn; it never decreases.
     fn now(&mut self) -> Duration;
     /// Sleeps for approximately `time`.
     fn sleep(&mut self, time: Duration);
-    /// Requests from the system that it wakes this thread on time.
+    /// Asks the system to wake this thread on time.
     ///
     /// # Errors
-    /// Returns a message if the system does not permit that.
+    /// Returns a message if the system does not permit this.
     fn keep_time(&mut self) -> Result<(), String> {
         Ok(())
     }
 }
 
-/// Clock of the time since the computer was started, including suspensions.
+/// Clock of the time since the computer was started, including the time for which it was suspended.
 #[derive(Debug)]
 pub(crate) struct SinceBoot;
 
@@ -40,7 +40,7 @@ impl Instants for SinceBoot {
     }
 }
 
-/// Converts a duration to nanoseconds; saturates at `u64::MAX`, which is 584 years.
+/// Converts a duration to nanoseconds; longer durations than 584 years become `u64::MAX`.
 pub(crate) fn nanos(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }

@@ -1,5 +1,5 @@
-//! Signals for a program without a robot of its own, such as several simulated runs: after a signal, the program ends
-//! in an orderly way, and the output so far is written.
+//! Handles signals for a program without a robot of its own, such as a program that makes several simulated runs. After
+//! a signal, the program ends in an orderly way, and writes its output so far.
 
 use std::io::{self, Write};
 

@@ -1,13 +1,13 @@
 //! Host of a plan's executable: arguments, clock, signals, safe stop, report and run log around the turns of the plan.
 //!
-//! Authors of robots use [`Target`], [`Time`] and [`Refusal`]; [`Observer`] for robots that observe their runs, and
+//! Authors of robots use [`Target`], [`Time`] and [`Refusal`]; [`Observer`] for robots that observe their runs;
 //! [`Batch`] for robots that can be started over; [`Watch`] and [`WholeFile`] for robots that show and draw runs
 //! themselves; [`Replays`] for robots that replay paths; [`read_file`] and [`output_format`] for options that name
 //! files; and [`Quantity`] for options with lengths and times. Generated code uses [`run`]. An engine that makes the
 //! turns of a run itself implements the trait [`Pilot`].
 //!
-//! The robot is stopped however a run ends: when the plan ends, an exchange fails, code panics, a signal arrives, or a
-//! limit is reached.
+//! The robot is stopped at every end of a run: when the plan ends, an exchange fails, code panics, a signal arrives, or
+//! a limit is reached.
 #![forbid(unsafe_code)]
 
 mod answer;
@@ -135,12 +135,12 @@ pub use watch::Watch;
 pub use whole_file::{Unfinished, WholeFile};
 
 /// Runs the plan that `plan` creates on the robot of the target `T`, with the arguments of this process. The `main` of
-/// an executable that mdlec builds calls this function. `program` is the plan's name for `--help`, whose usage names
-/// the executable as it was called; a [`Program`] also answers `--version`.
+/// an executable that mdlec builds calls this function. `program` is the plan's name for `--help`; the usage line shows
+/// the words by which the executable was called. A [`Program`] also answers `--version`.
 ///
-/// Exit status: 0 the plan has ended; 1 not all of several runs ended as required; 2 a bad option, world or start pose;
-/// 3 a fault stopped the robot, or a requested file could not be written; 4 `--timeout` or `--turns`; 5 the plan has
-/// ended, but not as required; 128+N signal N. In every case the robot was stopped.
+/// Exit status: 0 the plan has ended; 1 not all of several runs ended as required; 2 an invalid option, world or start
+/// pose; 3 a fault stopped the robot, or a requested file could not be written; 4 `--timeout` or `--turns`; 5 the plan
+/// has ended, but not as required; 128+N signal N. In all cases, the robot has been stopped.
 ///
 /// The function handles the signals of the process, and replaces its panic hook by a hook that never makes the robot
 /// wait.
@@ -151,7 +151,7 @@ where
     run_called::<T, P>(program, Call::of_executable(std::env::args_os()), plan)
 }
 
-/// Runs the plan that `plan` creates on the robot of the target `T` like [`run`], but with the words and options of
+/// Runs the plan that `plan` creates on the robot of the target `T`, as [`run`] does, but with the words and options of
 /// `call` instead of the arguments of this process.
 pub fn run_called<'a, T: Target, P>(
     program: impl Into<Program<'a>>,
@@ -164,8 +164,8 @@ where
     execute(program.into(), call, &PlanOnTarget::<T, P, _>::new(&plan, &|_| Ok(PlanAlone::new(&plan))))
 }
 
-/// Runs a plan like [`run_called`], with turns made by the pilot that `pilot` creates, under a supervisor if there is
-/// one. The plan that `plan` creates is read beforehand for its texts and paths. Exit status 6: the supervisor ended
+/// Runs a plan as [`run_called`] does. The pilot that `pilot` creates makes the turns; a supervisor may change its
+/// inputs. The texts and paths of the plan that `plan` creates are read beforehand. Exit status 6: the supervisor ended
 /// the plan. The exit status is also 0 if the supervisor ended the run.
 pub fn run_piloted<'a, 's, T: Target, B>(
     program: impl Into<Program<'a>>,
@@ -229,8 +229,8 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
     ExitCode::from(session::session(program, call, executable, surroundings))
 }
 
-/// Returns standard output and standard error, each with a thread that writes to it. The standard library's buffer of
-/// standard output is not used, because its content may be lost when the program ends. In a session, both are the
+/// Returns writers to standard output and standard error, each with its own thread. The standard library's buffer of
+/// standard output is not used, because its content may be lost when the program ends. In a session, both write to the
 /// session's stream.
 fn standard_streams(patience: &Patience, session: Option<BorrowedFd<'_>>) -> io::Result<(Outlet, Outlet)> {
     let open = |stream: BorrowedFd<'_>| -> io::Result<Outlet> {

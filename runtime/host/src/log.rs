@@ -19,37 +19,37 @@ use crate::transitions::{Operand, Transitions};
 #[derive(Debug)]
 pub(crate) struct Log {
     file: Outlet,
-    /// `true` if each turn is written to the file at once; `false` at the fastest pace.
+    /// `true` if each turn is written to the file immediately; `false` at the fastest pace.
     prompt: bool,
 }
 
 /// A turn for the run log.
 pub(crate) struct LogEntry<'a> {
-    /// Plan, for its texts.
+    /// Texts of the plan.
     pub(crate) plan: &'a dyn Texts,
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) turn: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
     /// State of the plan at the end of the turn.
     pub(crate) state: u64,
-    /// Kind of the turn, which determines the source of the input.
+    /// Result of the turn, which determines the source of the input.
     pub(crate) kind: Turn<()>,
-    /// Number of the atom whose law was applied, in the order of the plan's text; `None` for the null input.
+    /// Index of the atom whose law was applied, in the order of the plan's text; `None` for the null input.
     pub(crate) applied: Option<u32>,
     /// Frame of the applied law, if a `FRAME here` encloses its atom.
     pub(crate) frame: Option<Frame>,
     /// Transitions of the turn, in order.
     pub(crate) transitions: &'a Transitions,
-    /// Number of the plan, from 1.
+    /// Number of the plan, counted from 1.
     pub(crate) plan_number: u64,
-    /// Supervisor's part in the turn.
+    /// The supervisor's intervention in the turn.
     pub(crate) supervised: &'a Supervised,
 }
 
 impl LogEntry<'_> {
-    /// Returns the additional keys of a turn with a supervisor as JSON, each with a leading comma; `None` if there are
-    /// none.
+    /// Returns the additional keys of a turn with a supervisor as JSON, each preceded by a comma; `None` if there are
+    /// no additional keys.
     fn more(&self) -> Option<String> {
         let plan = (self.plan_number > 1).then(|| format!(",\"plan\":{}", self.plan_number));
         let safety = self.supervised.intervention().map(|Intervention { verdict, rule, .. }| {
@@ -62,8 +62,8 @@ impl LogEntry<'_> {
     }
 }
 
-/// A file that a run is going to write, such as its log, opened but unchanged. Dropping it removes the file if it is
-/// new.
+/// A file that a run is going to write, such as its log. The file is open, but still unchanged. If the file is new,
+/// dropping this value removes it.
 #[derive(Debug)]
 pub(crate) struct UnchangedFile<'p> {
     file: File,

@@ -1,4 +1,4 @@
-//! Passes the sound of a robot with two microphones to a module that listens.
+//! Passes the sound of a robot's two microphones to a module that listens.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -19,7 +19,7 @@ struct Sound {
     turns: VecDeque<(Nanos, Vec<[f32; 2]>)>,
 }
 
-/// A function that gives a robot the microphones of its run, on a head with this radius in metres.
+/// A function that gives a robot the microphones of its run; they are on a head with this radius, in metres.
 ///
 /// The function returns a message for the operator if the robot has no sound.
 pub type EarsOf<R> = fn(&mut R, Microphones, f64) -> Result<(), String>;
@@ -29,7 +29,7 @@ impl Microphones {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Requests sound, on a head with this radius in metres; called before the robot is connected.
+    /// Requests sound from microphones on a head with this radius, in metres. Called before the robot is connected.
     pub fn listen(&self, radius: f64) {
         self.lock().head = Some(radius);
     }

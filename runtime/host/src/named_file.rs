@@ -1,5 +1,5 @@
-//! Checks the files that options name: a file that a run writes may be named by only one option, and the run must not
-//! read it.
+//! Checks the files that options name. Only one option may name a file that a run writes, and the run must not read
+//! this file.
 
 use std::fs;
 use std::io;
@@ -16,7 +16,7 @@ const LINKS: usize = 40;
 pub struct NamedFile {
     /// Name of the option, such as `--log`.
     pub option: &'static str,
-    /// Path of the file as on the command line.
+    /// Path of the file as given on the command line.
     pub path: PathBuf,
     /// `true` if the run writes the file, `false` if the run reads it.
     pub is_written: bool,
@@ -25,16 +25,17 @@ pub struct NamedFile {
 /// Identity of a file, independent of the path to it.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// An existing file: its device, and its number on the device.
+    /// An existing file, given by its device and its file number (inode) on the device.
     Known(u64, u64),
     /// A new file at this path.
     New(PathBuf),
 }
 
-/// Checks that each file that the run writes is named by only one option, and is not this program.
+/// Checks that no two options name the same file if the run writes it, and that the run does not write to this
+/// program's own file.
 ///
 /// # Errors
-/// Returns a message for the operator with the options that name the same file, if one of them names it for writing.
+/// Returns a message for the operator that names the two options.
 pub(crate) fn check(mut files: Vec<NamedFile>) -> Result<(), Refusal> {
     if let Ok(path) = std::env::current_exe() {
         files.push(NamedFile { option: "", path, is_written: false });
@@ -52,7 +53,7 @@ pub(crate) fn check(mut files: Vec<NamedFile>) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Returns the error message for a file to write that is the same file as `other`.
+/// Returns the error message for the case that the file to write is the same file as `other`.
 fn clash(file: &NamedFile, other: &NamedFile) -> String {
     let (option, path) = (file.option, file.path.display());
     match other {
@@ -64,8 +65,8 @@ fn clash(file: &NamedFile, other: &NamedFile) -> String {
     }
 }
 
-/// Returns the identity of the file at a path; `None` if the identity is unknown, or if the file is not regular, such
-/// as a device.
+/// Returns the identity of the file at a path; `None` if the identity is unknown, or if it is not a regular file (but a
+/// device, for example).
 fn identity(path: &Path) -> Option<Identity> {
     match fs::metadata(path) {
         Ok(found) => found.is_file().then(|| Identity::Known(found.dev(), found.ino())),

@@ -11,20 +11,20 @@ use crate::{Batch, Observer, Refusal};
 pub struct Observation<R> {
     /// Function that returns the robot's observer.
     pub observer: fn(&mut R) -> &mut dyn Observer,
-    /// `true` if the robot itself handles `--watch`, `--plot`, `--record` and `--trail`, as a simulator does, which
-    /// knows the world; such a robot restores the screen when it is stopped. If `false`, the host handles these options
-    /// by odometry.
+    /// `true` if the robot itself handles `--watch`, `--plot`, `--record` and `--trail`, as a simulator does because it
+    /// knows the world. Such a robot also restores the screen when it is stopped. If `false`, the host handles these
+    /// options with the robot's odometry.
     pub draws: bool,
-    /// Function that returns several runs, if the options request more than one run; only robots that can be started
-    /// over have such options. No run has begun before the call.
+    /// Function that returns the runs of a batch, if the options request more than one run. Only robots that can be
+    /// started over have such options. No run has begun when the function is called.
     pub batch: fn(&ArgMatches, Duration) -> SeveralRuns<R>,
 }
 
-/// Several runs if the options request more than one run, or the reason why they cannot be made.
+/// The runs of a batch, if the options request more than one run; the error is the reason why they cannot be made.
 pub type SeveralRuns<R> = Result<Option<Batch<R>>, Refusal>;
 
 impl<R> Observation<R> {
-    /// Returns an observation with this observer. The host draws the views, and the robot makes a single run.
+    /// Creates an observation with this observer. The host draws the views, and the robot makes a single run.
     pub const fn by(observer: fn(&mut R) -> &mut dyn Observer) -> Self {
         Self { observer, draws: false, batch: |_, _| Ok(None) }
     }

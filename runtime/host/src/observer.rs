@@ -1,25 +1,25 @@
-//! Observer of a run, which informs a robot, such as a simulated one, about the course of the plan that drives it. A
-//! driver of a real robot needs no observer. See docs/src/reference/interfaces.md, 7.4.
+//! The observer of a run. It informs a robot, such as a simulated one, about the course of the plan that drives the
+//! robot. A driver of a real robot needs no observer. See docs/src/reference/interfaces.md, 7.4.
 
 use std::fmt;
 
 use mdle_runtime::Nanos;
 
-/// Follows the course of a plan on a robot, for pictures, a live view, or a goal.
+/// Follows the course of a plan on a robot, for example to draw pictures, to show a live view, or to check a goal.
 pub trait Observer {
-    /// Receives the beginning of an atom in the turn at time `t`, in which its law is applied. `number` is the atom's
-    /// state in the first pass of its enclosing loops, so that every pass of an atom as written has the same number.
+    /// Called when an atom begins, in the turn at time `t` in which its law is applied. `number` is the number of the
+    /// atom's state in the first pass of all enclosing loops, so it is the same in every pass.
     fn began(&mut self, _number: u64, _law: &str, _t: Nanos) {}
 
-    /// Receives the end of the turns of a run; the robot has not been stopped yet.
+    /// Called at the end of the turns of a run; the robot has not been stopped yet.
     fn ended(&mut self, _ended: &Ended<'_>) {}
 
-    /// Returns `true` if [`Observer::turned`] is to be called.
+    /// Returns `true` if [`Observer::turned`] has to be called.
     fn looks(&self) -> bool {
         false
     }
 
-    /// Receives the position in the plan after a turn.
+    /// Called after a turn, with the position in the plan.
     fn turned(&mut self, _standing: &PlanPosition<'_>) {}
 
     /// Returns the result of a run whose plan has ended; `None` if the run has no goal. Called after the robot was
@@ -43,7 +43,7 @@ pub trait Observer {
     }
 }
 
-/// A function that returns the observer of a robot, if it has one.
+/// A function that returns the observer of a robot; `None` if the robot has no observer.
 pub(crate) type Observes<R> = Option<fn(&mut R) -> &mut dyn Observer>;
 
 /// The position in a plan after a turn that did not end the plan.
@@ -53,21 +53,21 @@ pub struct PlanPosition<'a> {
     pub t: Nanos,
     /// Number of the current atom's state.
     pub state: u64,
-    /// Law of the current atom, as the text of a quark.
+    /// Text of the current atom's law.
     pub law: &'a str,
-    /// Place of the atom: its line, the names of its enclosing scopes and the passes of loops, such as `patrol.mdle:12,
-    /// Leg, pass 3 of 5`; empty for a plan that was written in Rust.
+    /// Position of the atom in the plan's text: its line, the names of its enclosing scopes and the passes of loops,
+    /// such as `patrol.mdle:12, Leg, pass 3 of 5`; empty for a plan that was written in Rust.
     pub place: String,
     /// Reason why the atom runs: the operands that fired, with their values; empty for the plan's first atom.
     pub since: &'a str,
-    /// Scopes that enclose the atom, from the plan to the atom's own scope.
+    /// Scopes that enclose the atom, from the outermost (the plan) to the atom's own scope.
     pub scopes: Vec<EnclosingScope<'a>>,
 }
 
-/// The end of a run's turns, in words for people.
+/// The end of a run's turns, described for people.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ended<'a> {
-    /// Name of the plan; empty if it has none.
+    /// Name of the plan; empty if the plan has no name.
     pub plan: &'a str,
     /// `true` if the plan has ended, `false` if it was stopped before.
     pub is_over: bool,
@@ -95,7 +95,7 @@ pub enum Judgement {
     Arrived,
     /// The robot touches an obstacle.
     Bumped,
-    /// The robot is outside its goal; the text says where.
+    /// The robot is outside its goal; the text says where the robot is.
     Astray(String),
 }
 

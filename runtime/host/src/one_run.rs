@@ -1,4 +1,4 @@
-//! The run of one robot: the robot is opened, makes its turns, and is always stopped.
+//! The run of one robot: connects to the robot, makes its turns, and always stops it.
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -24,7 +24,7 @@ use crate::surroundings::{PlanData, RunSettings, Surroundings};
 use crate::turns::{self, Witnesses};
 use crate::{Refusal, Time, watch, way_out};
 
-/// Opens the robot and the files, makes the turns, and stops the robot; returns the exit status.
+/// Connects to the robot, opens the files, makes the turns, and stops the robot; returns the exit status.
 pub(crate) fn one_run<'o, I, O>(
     executable: &dyn Executable,
     settings: &RunSettings<'_>,
@@ -65,7 +65,7 @@ fn begin(settings: &RunSettings<'_>, target: &str) -> Begin {
     }
 }
 
-/// Makes the turns of an open robot, stops it, and reports why the run ended; returns the exit status.
+/// Makes the turns of a connected robot, stops it, and reports why the run ended; returns the exit status.
 fn driven<'o, I, O>(
     mut ready: Ready<'_>,
     settings: &RunSettings<'_>,
@@ -156,7 +156,7 @@ fn end(
     status
 }
 
-/// Warns that the system does not give a permission, so that turns may be late, and names the command that gives it.
+/// Warns that turns may be late because the system does not give a permission; names the command that gives it.
 fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Write) {
     let program = program.map_or_else(|| "FILE".into(), |program| program.to_string_lossy());
     say(
@@ -168,7 +168,7 @@ fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Wri
     );
 }
 
-/// Reports that a signal ended the run while the robot was being opened; returns the exit status.
+/// Reports that a signal ended the run while the program connected to the robot; returns the exit status.
 fn ended_at_the_start(signals: &Signals, stopped: Result<(), String>, err: &mut dyn Write) -> u8 {
     let Some(signal) = signals.caught() else {
         signals.patience().stop_was_tried(None);

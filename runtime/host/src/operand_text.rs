@@ -1,23 +1,23 @@
-//! Compares a text with an operand of the plan, independent of spaces, units and the form of numbers.
+//! Compares a text with an operand of the plan. Differences in spaces, units and the form of numbers are ignored.
 
 use mdle_runtime::OperandWords;
 
 use crate::Quantity;
 
-/// Maximum relative difference of two numbers that count as equal: converting units may change the last digits.
+/// Maximum relative difference of two numbers that are treated as equal: converting units may change the last digits.
 const TOLERANCE: f64 = 1e-9;
 
 /// A word or a number of a condition.
 #[derive(Debug, PartialEq)]
 enum OperandToken<'a> {
-    /// A name, an operator, a text in quotes, or a number whose leading zeros are significant.
+    /// A name, an operator, a quoted text, or a number whose leading zeros are significant.
     Word(&'a str),
-    /// A number in the base unit of its quantity, or as written if it has no unit.
+    /// A number, converted to the base unit of its quantity; a number without a unit is unchanged.
     Number(Option<Quantity>, f64),
 }
 
-/// Returns `true` if `text` is the operand: in its canonical form, as written in the plan, or with other units and
-/// spaces.
+/// Returns `true` if `text` means the operand: it may have the operand's canonical form, the form in the plan's text,
+/// or differ from these in units and spaces.
 #[must_use]
 pub fn is_operand(text: &str, operand: &OperandWords<'_>) -> bool {
     let unit = operand.values.first().map_or("", |signal| signal.unit);
@@ -28,7 +28,7 @@ pub fn is_operand(text: &str, operand: &OperandWords<'_>) -> bool {
     })
 }
 
-/// Returns `true` if two texts differ only in spaces and the form of numbers.
+/// Returns `true` if the two texts are equal except for spaces and the form of numbers.
 #[must_use]
 pub fn is_condition(text: &str, condition: &str) -> bool {
     is_operand(text, &OperandWords { text: condition, written: condition, ..NO_OPERAND })
@@ -48,7 +48,7 @@ impl OperandToken<'_> {
     }
 }
 
-/// Returns the words of a condition, in which numbers without a unit have the unit `unit`.
+/// Returns the words and numbers of a condition. A number that is written without a unit gets the unit `unit`.
 fn tokens<'a>(text: &'a str, unit: &str) -> Vec<OperandToken<'a>> {
     let mut tokens = Vec::new();
     let mut rest = text.trim_start();
@@ -77,7 +77,8 @@ fn word_length(rest: &str, first: char) -> usize {
     }
 }
 
-/// Returns the number at the start of `rest` with its unit, or with `bare` if it has none, and the length in bytes.
+/// Returns the number at the start of `rest`, and its length in bytes. A number that is written without a unit gets the
+/// unit `bare`.
 fn number<'a>(rest: &'a str, bare: &str) -> (OperandToken<'a>, usize) {
     let is_part = |letter: char| letter.is_ascii_digit() || letter == '.';
     let mantissa = rest.find(|letter| !is_part(letter)).unwrap_or(rest.len());

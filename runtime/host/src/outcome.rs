@@ -13,13 +13,13 @@ pub(crate) enum RunOutcome {
     Arrived,
     /// The plan has ended, and the robot touches an obstacle.
     Bumped,
-    /// The plan has ended, and the robot is outside its goal; the text says where.
+    /// The plan has ended, and the robot is outside its goal; the text says where the robot is.
     Astray(String),
-    /// The plan has ended by a cause other than the required ones.
+    /// The plan has ended, but not by one of the required causes.
     Otherwise,
-    /// The run has reached its time limit before the plan has ended.
+    /// The run has reached its time limit before the plan ended.
     TimedOut,
-    /// The run could not begin, or a fault stopped it, for this reason.
+    /// The run could not begin, or a fault stopped it; contains the reason.
     Failed(String),
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct EndedRun {
     pub(crate) outcome: RunOutcome,
     /// Time of the plan at the end of the run.
     pub(crate) t: Nanos,
-    /// End of the plan; `None` if the plan has not ended.
+    /// Cause of the plan's end; `None` if the plan has not ended.
     pub(crate) over: Option<Over>,
     pub(crate) contacts: u64,
 }

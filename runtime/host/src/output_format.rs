@@ -1,4 +1,4 @@
-//! Checks the names of output files: a name with an ending is refused unless it is the ending of the option's format.
+//! Checks the names of output files. If a name has an extension, it must be the extension of the option's format.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ pub fn output_format(format: &'static str, ending: &'static str) -> impl TypedVa
     })
 }
 
-/// Returns the error message for `path` if it has another ending than `ending`; `None` if the name is accepted.
+/// Returns the error message for `path` if it has an ending other than `ending`; `None` if the name is accepted.
 fn refusal(path: &Path, format: &str, ending: &str) -> Option<String> {
     let given = path.extension().filter(|given| !given.eq_ignore_ascii_case(ending))?;
     let (given, name) = (given.to_string_lossy(), path.with_extension(ending));

@@ -1,4 +1,4 @@
-//! The panic hook, which reports where code panicked without making the robot wait for the reader of the report.
+//! The panic hook, which reports where code panicked. It does not make the robot wait for the reader of the report.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, PanicHookInfo};
@@ -12,7 +12,7 @@ pub(crate) fn tell_to(outlet: Aside) {
     panic::set_hook(Box::new(move |panic| outlet.tell(report(panic))));
 }
 
-/// Returns the text of the standard library's own panic hook.
+/// Returns the text that the standard library's own panic hook would print.
 fn report(panic: &PanicHookInfo<'_>) -> String {
     let current = thread::current();
     let thread = current.name().unwrap_or("<unnamed>");

@@ -1,10 +1,10 @@
-//! The passes of the loops that enclose the current atom, counted for reports; a machine counts only the passes of
-//! finite loops.
+//! Counts the passes of the loops that enclose the current atom, for reports. A machine itself counts only the passes
+//! of finite loops.
 
 use mdle_runtime::fsm::{Bracket, Kind};
 use mdle_runtime::{Fsm, Transition};
 
-/// Number of the current pass of each loop, from 1, indexed by the loop's bracket.
+/// Number of the current pass of each loop, counted from 1, indexed by the loop's bracket.
 #[derive(Debug, Default)]
 pub struct Passes(Vec<u64>);
 
@@ -20,7 +20,7 @@ impl Passes {
         self.step_into(fsm, transition, |_| ());
     }
 
-    /// Updates the passes like [`Passes::step`], and calls `begins` with each bracket that begins in the transition.
+    /// Updates the passes as [`Passes::step`] does, and calls `begins` with each bracket that begins in the transition.
     pub fn step_into(&mut self, fsm: Fsm<'_>, transition: &Transition, mut begins: impl FnMut(u32)) {
         self.0.resize(fsm.brackets.len(), 1);
         let own = transition.atom.and_then(|atom| fsm.atoms.get(atom as usize));
@@ -42,7 +42,7 @@ impl Passes {
         }
     }
 
-    /// Begins the next pass of `bracket`; returns `false` if it is not a loop or has no further pass.
+    /// Begins the next pass of `bracket`; returns `false` if it is not a loop or has no pass left.
     fn spend(&mut self, number: u32, bracket: &Bracket) -> bool {
         let (Kind::Loop { times, .. }, Some(pass)) = (bracket.kind, self.0.get_mut(number as usize)) else {
             return false;
@@ -55,7 +55,8 @@ impl Passes {
     }
 }
 
-/// Returns a bracket and its enclosing brackets from the inside to the outside, each with its number.
+/// Returns an iterator over a bracket and all brackets that enclose it, with their numbers, from the innermost to the
+/// outermost.
 pub fn outwards(fsm: Fsm<'_>, bracket: u32) -> impl Iterator<Item = (u32, &Bracket)> {
     let at = move |number: u32| fsm.brackets.get(number as usize).map(|bracket| (number, bracket));
     std::iter::successors(at(bracket), move |(number, bracket)| {

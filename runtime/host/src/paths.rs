@@ -1,4 +1,4 @@
-//! Reads the paths that the plan of a run replays, before the robot moves, and records the driven path.
+//! Reads the paths that the plan of a run replays, before the robot moves. Also records the path that the robot drives.
 
 mod record;
 #[cfg(test)]
@@ -21,10 +21,10 @@ use crate::files::read_file;
 use crate::output_format::output_format;
 use crate::target_options::TargetOptions;
 
-/// Maximum size of a path file, in bytes: about eleven hours at ten rows per second.
+/// Maximum size of a path file, in bytes; with ten rows per second, this is about eleven hours.
 const LARGEST: u64 = 10_000_000;
 
-/// Returns `command` with the options of a target that replays paths.
+/// Adds the options of a target that replays paths to `command`.
 pub(crate) fn arguments(command: Command) -> Command {
     let option = |name, value| Arg::new(name).long(name).value_name(value);
     command
@@ -40,7 +40,7 @@ pub(crate) fn arguments(command: Command) -> Command {
         )
 }
 
-/// Returns the file of the option `--record-path`.
+/// Returns the file that the option `--record-path` names.
 pub(crate) fn recording(target: &TargetOptions, matches: &ArgMatches) -> Option<PathBuf> {
     target.fastest.and_then(|_| matches.get_one("record-path").cloned())
 }
@@ -48,7 +48,7 @@ pub(crate) fn recording(target: &TargetOptions, matches: &ArgMatches) -> Option<
 /// Checks that turns are short enough for recording a path.
 ///
 /// # Errors
-/// Fails if the turns are too long: the path could not be replayed.
+/// Fails if the turns are too long, because the path could not be replayed.
 pub(crate) fn check_period(period: Duration) -> Result<(), Refusal> {
     if period <= APART {
         return Ok(());
@@ -61,8 +61,8 @@ pub(crate) fn check_period(period: Duration) -> Result<(), Refusal> {
 /// Reads the paths that a plan replays. The path with the name `later` may have no file yet.
 ///
 /// # Errors
-/// Fails if a file is missing or contains no path, or if its path is too fast for the robot. The message names the
-/// file, place and reason.
+/// Fails if a file is missing or contains no path, or if its path is too fast for the robot. The message contains the
+/// file, the position in the file, and the reason.
 pub(crate) fn load(
     target: &TargetOptions,
     matches: &ArgMatches,
@@ -89,20 +89,20 @@ pub(crate) fn load(
     Ok(PathStore::new(stored.collect::<Vec<_>>().leak()))
 }
 
-/// Returns the files of the paths that a plan replays.
+/// Returns the files that contain the paths that a plan replays.
 pub(crate) fn files(matches: &ArgMatches, names: &[&'static str]) -> impl Iterator<Item = PathBuf> {
     // A robot that replays no paths does not have this option.
     let folder = if names.is_empty() { None } else { matches.get_one::<PathBuf>("paths").cloned() };
     names.iter().map(move |name| place(folder.as_deref(), name))
 }
 
-/// Returns the file of the path with this name in a plan. A name without an ending gets the ending `csv`.
+/// Returns the file of the path `name` of a plan. A name without an ending gets the ending `csv`.
 fn place(folder: Option<&Path>, name: &str) -> PathBuf {
     let file = if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") };
     folder.map_or_else(|| PathBuf::from(&file), |folder| folder.join(&file))
 }
 
-/// Reads the path with this name in a plan.
+/// Reads the path `name` of a plan.
 fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoint>, String> {
     let place = place(folder, name);
     let shown = place.display();
@@ -123,7 +123,7 @@ fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoin
 /// `file`.
 ///
 /// # Errors
-/// Returns a message that describes the error in the path, and its place.
+/// Returns a message with the error in the path, and its position.
 pub fn setpoints(file: &str, bytes: &[u8], fastest: Twist) -> Result<Vec<Setpoint>, String> {
     let read = text::utf8(bytes).and_then(|text| text::setpoints(text, fastest));
     read.map_err(|TextFault { place, what }| match place {

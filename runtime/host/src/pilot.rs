@@ -1,5 +1,5 @@
-//! Interface of the code that makes a run's turns: a plan in an executable, an engine with modules in `mdle`. For both,
-//! the host handles exchange, limits, signals, reports and the safe stop.
+//! Interface of the code that makes a run's turns. In an executable, this code is a plan; in `mdle`, it is an engine
+//! with modules. For both, the host handles exchange, limits, signals, reports and the safe stop.
 
 use std::time::Duration;
 
@@ -11,15 +11,15 @@ use crate::{Microphones, Refusal, StopRequest, Time};
 
 /// Computes the input of each turn.
 pub trait Pilot {
-    /// Type of the plans, for reports.
+    /// Type of the plans, for use in reports.
     type Plan: Plan;
 
-    /// Completes the output of a turn at time `t` with the values that modules have published, before the supervisor
-    /// reads it.
+    /// Adds the values that modules have published to the output of the turn at time `t`, before the supervisor reads
+    /// the output.
     fn complete(&mut self, _y: &mut <Self::Plan as Plan>::Output, _t: Nanos) {}
 
-    /// Makes a turn. The first turn begins the plan, or null inputs are sent until the plan can begin. `transitions` is
-    /// empty, and receives the transitions of the plan.
+    /// Makes a turn. The first turn begins the plan; if the plan cannot begin yet, null inputs are sent until it can.
+    /// `transitions` is empty at first, and receives the transitions of the plan.
     ///
     /// # Errors
     /// Returns the reason if the run must end although the robot has no fault.
@@ -29,29 +29,31 @@ pub trait Pilot {
         transitions: &mut Transitions,
     ) -> Result<Turn<<Self::Plan as Plan>::Input>, PilotFault>;
 
-    /// Replaces the plan by `plan`, which begins in this turn, on request of a supervisor.
+    /// Replaces the current plan with `plan`, which begins in this turn, because a supervisor requests it.
     fn divert(&mut self, plan: Self::Plan, moment: PilotTurn<'_, <Self::Plan as Plan>::Output>);
 
-    /// Returns the number of the current plan, from 1; each plan that replaces a plan has the next number.
+    /// Returns the number of the current plan. The first plan has number 1, and each plan that replaces another one has
+    /// the next number.
     fn plan_number(&self) -> u64;
 
-    /// Returns the reason why the current plan has replaced another plan; empty if [`Pilot::divert`] replaced it.
+    /// Returns the reason why the current plan has replaced another plan; empty if [`Pilot::divert`] replaced that
+    /// plan.
     fn reason(&self) -> &str {
         ""
     }
 
-    /// Handles the end of the current plan by a rule of the supervisor. Returns `true` if another plan continues in the
-    /// next turn, so that the run does not end.
+    /// Handles the end of the current plan by the rule `_rule` of the supervisor. Returns `true` if another plan
+    /// continues in the next turn, so that the run does not end.
     fn ended_by(&mut self, _rule: &str) -> bool {
         false
     }
 
-    /// Returns how the run continues, after a turn in which the current plan has ended.
+    /// Returns the continuation of the run after a turn in which the current plan has ended.
     fn after_plan(&mut self) -> AfterPlan {
         AfterPlan::Ends
     }
 
-    /// Returns the current plan with its state, once the plan has begun.
+    /// Returns the current plan with its state; `None` before the plan has begun.
     fn machine(&self) -> Option<&Machine<Self::Plan>>;
 
     /// Returns the time of the run at which the plan began, which is time 0 of the plan.
@@ -73,23 +75,23 @@ pub trait Pilot {
     }
 }
 
-/// A turn of a run.
+/// Output, time and number of a turn.
 #[derive(Debug)]
 pub struct PilotTurn<'y, Y> {
     /// Output of the robot.
     pub y: &'y Y,
     /// Time of the run at which the output was read; the first output is at time 0.
     pub t: Nanos,
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
 }
 
 /// Reason why a run must end although the robot has no fault (exit status 3).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PilotFault {
-    /// The turns cannot continue, for the reason in this sentence.
+    /// The turns cannot continue; contains the reason as a sentence.
     Stopped(String),
-    /// The plan panicked with this message.
+    /// The plan panicked; contains the panic message.
     Panicked(String),
 }
 
@@ -100,7 +102,7 @@ pub enum AfterPlan {
     Ends,
     /// Another plan begins in the next turn.
     Continues,
-    /// The run ends before its goal, for the reason in this sentence (exit status 3).
+    /// The run ends before its goal (exit status 3); contains the reason as a sentence.
     Fails(String),
 }
 
@@ -111,21 +113,21 @@ pub struct RunTerms {
     pub time: Time,
     /// Period of a turn.
     pub period: Duration,
-    /// Request to end the run, which a signal makes.
+    /// Request to end the run; a signal makes this request.
     pub request: StopRequest,
-    /// Microphones of the robot for a module that listens.
+    /// Microphones of the robot, for a module that listens.
     pub microphones: Microphones,
 }
 
 /// A function that creates the pilot of a run.
 pub(crate) type MakePilot<'p, B> = dyn Fn(&RunTerms) -> Result<B, Refusal> + Sync + 'p;
 
-/// The pilot of an executable, which has only a plan.
+/// The pilot of an executable, which runs a plan without modules.
 pub(crate) struct PlanAlone<'p, P: Plan> {
     /// Function that creates the plan.
     plan: &'p (dyn Fn() -> P + Sync),
     machine: Option<Machine<P>>,
-    /// Number of the current plan, from 1.
+    /// Number of the current plan, counted from 1.
     number: u64,
 }
 

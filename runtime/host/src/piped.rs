@@ -15,13 +15,13 @@ use crate::files::read_text;
 /// Maximum time to wait for more text in a pipe, in seconds.
 const PATIENCE: i64 = 10;
 
-/// Texts of the pipes that have been read.
+/// The pipes that have been read, each with its text, because a pipe can be read only once.
 static PIPES: Mutex<Vec<(PathBuf, String)>> = Mutex::new(Vec::new());
 
 /// Reads a regular file or a pipe of at most `most` bytes as text.
 ///
 /// # Errors
-/// Fails if [`read_text`] fails, or if a pipe is empty or does not end.
+/// Fails if [`read_text`] fails, or if the pipe is empty or does not end.
 pub fn read_piped_text(path: &Path, most: u64) -> io::Result<String> {
     if !fs::metadata(path)?.file_type().is_fifo() {
         return read_text(path, most);

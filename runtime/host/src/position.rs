@@ -1,16 +1,16 @@
-//! Interfaces to a plan and to the position in it that do not depend on the types of the plan and the robot.
+//! Interfaces to a plan and to the position in a plan, independent of the types of the plan and the robot.
 
 use mdle_runtime::{Frame, Fsm, Machine, Nanos, Plan, Words};
 
-/// Texts and tables of a plan, for reports: [`Plan`] without the types of its robot.
+/// Texts and tables of a plan, for reports: like [`Plan`], but without the types of its robot.
 pub trait Texts {
     /// Returns the tables of the state machine.
     fn fsm(&self) -> Fsm<'_>;
-    /// Returns the law of an atom, as the text of a quark.
+    /// Returns the text of an atom's law.
     fn law(&self, atom: u32) -> &str;
-    /// Returns the text of the condition of a scope's interrupt, by the scope's bracket.
+    /// Returns the condition text of a scope's interrupt, given the number of the scope's bracket.
     fn condition(&self, scope: u32) -> &str;
-    /// Returns the name of a scope, by its bracket; empty for an atom.
+    /// Returns the name of a scope, given the number of its bracket; an empty text for an atom.
     fn name(&self, scope: u32) -> &str;
     /// Returns the plan's source text for reports; it may be empty.
     fn source(&self) -> &dyn Words;
@@ -44,13 +44,13 @@ impl<P: Plan> Texts for P {
     }
 }
 
-/// The position in a running plan, for reports: [`Machine`] without the types of its plan.
+/// The position in a running plan, for reports: like [`Machine`], but without the types of its plan.
 pub(crate) trait Position {
     /// Returns the texts of the plan.
     fn texts(&self) -> &dyn Texts;
     /// Returns the number of the current state in the expanded plan.
     fn state(&self) -> u64;
-    /// Returns the index of the current atom in source order, from 0; `None` when the plan has ended.
+    /// Returns the index of the current atom in the order of the plan's text; `None` when the plan has ended.
     fn atom(&self) -> Option<u32>;
     /// Returns the frame of the current atom, if a `FRAME here` encloses the atom.
     fn frame(&self) -> Option<Frame>;

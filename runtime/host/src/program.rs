@@ -1,11 +1,11 @@
-//! Names of a program that runs a plan, as in `--help` and `--version`.
+//! Names of a program that runs a plan, as `--help` and `--version` show them.
 
 /// Names of a program that runs a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Program<'a> {
     /// Name of the plan, which `--help` shows.
     pub plan: &'a str,
-    /// Answer to `--version` after the plan's name; if it is empty, the executable has no option `--version`.
+    /// Answer to `--version`, which follows the plan's name. If it is empty, the executable has no option `--version`.
     pub version: &'a str,
 }
 

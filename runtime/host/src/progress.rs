@@ -1,4 +1,5 @@
-//! The line on standard error that shows the progress of a fast run: only on a terminal, and erased at the end.
+//! The line on standard error that shows the progress of a fast run. It appears only on a terminal, and is erased at
+//! the end.
 
 use std::fmt;
 use std::io::Write;
@@ -32,13 +33,13 @@ impl fmt::Debug for ProgressLine<'_> {
 }
 
 impl<'e> ProgressLine<'e> {
-    /// Returns a line on `err`; `now` returns the time since the work began.
+    /// Creates a line on `err`; `now` returns the time since the work began.
     pub fn new(err: &'e mut dyn Write, now: Box<dyn FnMut() -> Duration + 'e>) -> Self {
         Self { err, now, next: EVERY, shown: false }
     }
 
-    /// Shows the report of a run and its progress, if it is time for an update; the current atom has the law `law` at
-    /// time `t`.
+    /// Shows the report of a run and its progress, if an update is due. `law` is the law of the current atom at time
+    /// `t`.
     pub(crate) fn run(&mut self, t: Nanos, law: &str, report: &mut ReportWriter<'_>) {
         let Some(now) = self.due() else { return };
         self.clear();
@@ -62,7 +63,7 @@ impl<'e> ProgressLine<'e> {
         self.show(&format!("[{full}{empty}] {done} of {all} runs, {left:.0} s to go"));
     }
 
-    /// Shows that the simulation has reached time `t` of `end`.
+    /// Shows that the simulation has reached the time `t`; it ends at `end`.
     pub fn simulated(&mut self, t: Nanos, end: Nanos) {
         let Some(now) = self.due() else { return };
         let (t, end) = (t.seconds(), end.seconds());
@@ -72,7 +73,7 @@ impl<'e> ProgressLine<'e> {
         self.show(&format!("[{full}{empty}] {t:.1} of {end:.0} s, {times:.1} times as fast as real"));
     }
 
-    /// Returns the current time if it is time for an update.
+    /// Returns the current time if an update is due; `None` otherwise.
     fn due(&mut self) -> Option<Duration> {
         let now = (self.now)();
         (now >= self.next).then(|| {

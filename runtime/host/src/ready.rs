@@ -1,5 +1,5 @@
-//! Opens the robot and the files before the first turn of a run, in an order that leaves all files unchanged if the
-//! start is refused.
+//! Connects to the robot and opens the files before the first turn of a run. The order of these steps ensures that all
+//! files are unchanged if the run cannot start.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -21,22 +21,22 @@ use crate::target_options::TargetOptions;
 use crate::views::{self, ByOdometry};
 use crate::{NamedFile, Pace, Refusal, Time, named_file};
 
-/// The robot and the files that a run needs before its first turn.
+/// A connected robot and open files, ready for the first turn of a run.
 pub(crate) struct Ready<'p> {
-    /// Open robot with the plan that drives it.
+    /// Connected robot, with the plan that drives it.
     pub(crate) drive: Box<dyn Drive + 'p>,
     /// Source of the time of the turns.
     pub(crate) time: Time,
-    /// Log, or the error that prevents it. The error does not refuse the run: the robot is already open, and must be
-    /// stopped.
+    /// Log of the run, or the error that prevents it. The run is not refused because of this error, because the robot
+    /// is already connected and must be stopped.
     pub(crate) log: io::Result<Option<RunLog>>,
-    /// Recorder of the driven path, if the path is recorded.
+    /// Recorder of the driven path; `None` if the path is not recorded.
     pub(crate) path: io::Result<Option<PathRecording>>,
-    /// Views by odometry, if the options request them.
+    /// Views by odometry; `None` if the options do not request them.
     pub(crate) views: Option<ByOdometry>,
 }
 
-/// Opens the robot and the files of a run. A refused start leaves the files unchanged.
+/// Connects to the robot and opens the files of a run. If the run cannot start, the files are left unchanged.
 pub(crate) fn ready<'p>(
     executable: &'p dyn Executable,
     matches: &ArgMatches,
@@ -76,7 +76,7 @@ pub(crate) struct KnownFiles<'a> {
     pub(crate) paths: &'a [&'static str],
 }
 
-/// Returns the files that the options of a run name.
+/// Returns all files that the options of a run name.
 fn named_files(
     target: &TargetOptions,
     matches: &ArgMatches,
@@ -95,8 +95,8 @@ fn named_files(
     written.chain(views::files(matches)).chain(read).chain((target.files)(matches)).collect()
 }
 
-/// Returns an error for a log without a file name, or for a record of a robot whose outputs or inputs a record cannot
-/// contain.
+/// Checks the options for the log. Fails for a log without a file name, and for a record if a record cannot contain the
+/// outputs or inputs of the robot.
 fn check_record(target: &TargetOptions, options: &SharedOptions) -> Result<(), Refusal> {
     if options.log.as_deref() == Some(Path::new("-")) {
         let sentence = "--log -: expected the name of a file; `--log /dev/stdout` writes JSON lines to standard output";
@@ -112,7 +112,7 @@ fn check_record(target: &TargetOptions, options: &SharedOptions) -> Result<(), R
     )))
 }
 
-/// Begins the log in the format that its name determines.
+/// Begins the log; the file's name determines the format.
 fn begun(
     file: UnchangedFile<'_>,
     options: &SharedOptions,
@@ -128,21 +128,21 @@ fn begun(
     Ok(RunLog::new(format, options.log_best_effort))
 }
 
-/// Opens the file at `path`, which the run will write, but leaves it unchanged; returns `None` if there is no path.
-/// Error messages call the file `what`.
+/// Opens the file at `path`, which the run will write later, and leaves it unchanged. Returns `None` if there is no
+/// path. Error messages call the file `what`.
 fn untouched<'p>(what: &str, path: Option<&'p Path>) -> Result<Option<UnchangedFile<'p>>, Refusal> {
     let refused =
         |path: &Path, error| Refusal::Usage(format!("the {what} {} cannot be written: {error}", path.display()));
     path.map(|path| UnchangedFile::open(path).map_err(|error| refused(path, error))).transpose()
 }
 
-/// Converts a panic before the run to a refusal.
+/// Converts a panic that happened before the run to a refusal.
 pub(crate) fn bug_before<T>(Panicked(message): Panicked) -> Result<T, Refusal> {
     Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
 }
 
-/// Returns `true` unless the run has the fastest pace. At other paces a person may be watching; at the fastest pace,
-/// cheap writing is more important.
+/// Returns `false` if the run has the fastest pace. At other paces, a person may be watching the run; at the fastest
+/// pace, fast writing is more important.
 pub(crate) fn is_watched(time: Time) -> bool {
     match time {
         Time::Wall | Time::Stepped(Pace::Times(_)) => true,

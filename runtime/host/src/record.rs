@@ -19,8 +19,8 @@ use crate::log::LogEntry;
 use crate::supervised::Supervised;
 use crate::transitions::Operand;
 
-/// Interval of the run's time, in nanoseconds, at which recorded data are passed to the system if a person may be
-/// watching.
+/// Interval of the run's time, in nanoseconds, at which recorded data are passed to the system in a run that a person
+/// may be watching.
 const FLUSH: u64 = 1_000_000_000;
 
 /// A record that is being written.
@@ -34,7 +34,7 @@ pub(crate) struct RecordWriter<W = Outlet> {
     /// Changes that influenced the turn, besides its output.
     changes: Vec<RecordedChange>,
     has_begun: bool,
-    /// `true` if each second of the run is written to the file at once; `false` at the fastest pace.
+    /// `true` if each second of the run is written to the file immediately; `false` at the fastest pace.
     prompt: bool,
     flushed: Nanos,
     /// Encoded frames of a turn.
@@ -43,21 +43,21 @@ pub(crate) struct RecordWriter<W = Outlet> {
     intervention: String,
 }
 
-/// A turn without the results of a plan.
+/// A turn, without the results of a plan.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct UnmadeTurn<'a> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) number: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
-    /// Number of the plan, from 1.
+    /// Number of the plan, counted from 1.
     pub(crate) plan: u64,
-    /// Supervisor's part in the turn.
+    /// The supervisor's intervention in the turn.
     pub(crate) supervised: &'a Supervised,
 }
 
 impl<W: Write> RecordWriter<W> {
-    /// Returns the record of a run that begins, which is written to `file`.
+    /// Creates the record of a run that begins, which is written to `file`.
     pub(crate) fn new(file: W, begin: Begin, prompt: bool) -> Self {
         let (frames, bytes, intervention) = (Frames::default(), Vec::new(), String::new());
         let flushed = Nanos::ZERO;
@@ -98,7 +98,7 @@ impl<W: Write> RecordWriter<W> {
         self.written(unmade)
     }
 
-    /// Writes the beginning of the record, unless it was written with a turn.
+    /// Writes the beginning of the record, unless it has already been written with a turn.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -108,14 +108,14 @@ impl<W: Write> RecordWriter<W> {
         self.file.write_all(&self.bytes)
     }
 
-    /// Adds the beginning to the bytes, before the first turn.
+    /// Appends the beginning of the record to the encoded bytes, before the first turn.
     fn begin(&mut self, y: &Sensed) {
         if !std::mem::replace(&mut self.has_begun, true) {
             self.frames.begin(&self.begin, y, &mut self.bytes);
         }
     }
 
-    /// Writes the part of a turn that a replay needs.
+    /// Writes the data of a turn that a replay needs.
     fn exact(
         &mut self,
         turn: &UnmadeTurn<'_>,
@@ -179,7 +179,7 @@ impl<W: Write> RecordWriter<W> {
         }
     }
 
-    /// Writes an event if the supervisor's intervention differs from that in the previous turn.
+    /// Writes an event if the supervisor's intervention differs from the one in the previous turn.
     fn intervention(&mut self, turn: &UnmadeTurn<'_>) {
         let now = turn.supervised.intervention();
         let now =

@@ -2,15 +2,15 @@
 
 use std::fmt;
 
-/// Reason why a robot could not be opened.
+/// Reason why the program could not connect to a robot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Refusal {
     /// An option, a world or a start pose is invalid.
     Usage(String),
-    /// The robot does not answer, or reports that it cannot be driven.
+    /// The robot does not answer, or reports that it is not ready to drive.
     Fault(String),
-    /// The run was asked to end while the robot was being opened. The robot was stopped; if not, the sentence gives the
-    /// reason (exit status 3).
+    /// The run was asked to end while the program connected to the robot. Contains the result of stopping the robot; if
+    /// the stop failed, the sentence gives the reason (exit status 3).
     Ended(Result<(), String>),
 }
 

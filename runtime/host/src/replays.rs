@@ -1,4 +1,4 @@
-//! Functions by which a robot replays paths.
+//! Functions with which a robot replays paths.
 
 use mdle_runtime::{MetersPerSecond, PathStore, Robot, Twist};
 
@@ -6,8 +6,8 @@ use mdle_runtime::{MetersPerSecond, PathStore, Robot, Twist};
 pub struct Replays<R: Robot> {
     /// Maximum forward or backward speed and turn rate of a path.
     pub fastest: Twist,
-    /// Function that gives the robot the paths that the plan replays, before the first exchange; from then on each
-    /// output contains them.
+    /// Function that passes to the robot the paths that the plan replays. It is called before the first exchange with
+    /// the robot; every later output contains these paths.
     pub take: fn(&mut R, PathStore),
     /// Function that returns the robot's forward speed in an output.
     pub speed: fn(&R::Output) -> MetersPerSecond,

@@ -1,5 +1,5 @@
-//! Report of a run on standard output: a line for each transition, and at the end the reason why the plan has ended.
-//! See docs/src/reference/interfaces.md, 6.2.
+//! Report of a run on standard output: a line for each transition, and finally the reason why the plan has ended. See
+//! docs/src/reference/interfaces.md, 6.2.
 
 use std::io::{self, Write};
 
@@ -18,16 +18,16 @@ use crate::{Judgement, Verdict};
 /// Writer of the report of a run; it stops writing when its reader closes the stream.
 pub(crate) struct ReportWriter<'a> {
     out: &'a mut dyn Write,
-    /// `true` if lines are shown as soon as they are written; `false` at the fastest pace.
+    /// `true` if lines are shown immediately; `false` at the fastest pace.
     prompt: bool,
-    /// State of the report: after an error nothing more is written. The error is kept, unless the reader has closed the
-    /// stream.
+    /// State of the report. After an error, nothing more is written. The error is kept, unless the reader has closed
+    /// the stream.
     state: ReportState,
     course: RunCourse,
-    /// End of the plan; `None` until the plan has ended.
+    /// Cause of the plan's end; `None` while the plan has not ended.
     over: Option<Over>,
-    /// Strength and rule of the intervention in the last turn; `None` if there was none, or if it only limited an
-    /// input.
+    /// Strength and rule of the intervention in the last turn; `None` if there was no intervention, or if it only
+    /// limited an input.
     last_verdict: Option<(Verdict, String)>,
     /// The rules that have limited an input.
     limiting: Vec<String>,
@@ -35,16 +35,16 @@ pub(crate) struct ReportWriter<'a> {
     holds: Holds,
 }
 
-/// End of a plan.
+/// End of a plan, with its cause.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Over {
-    /// Cause of the end, as in a report.
+    /// Cause of the end, as a report shows it.
     pub(crate) cause: String,
     /// Text of the interrupt's condition, or `completed`.
     pub(crate) by: String,
     /// Texts of the operands that fired.
     pub(crate) operands: Vec<String>,
-    /// Cause of the end as in a report, but without measured values.
+    /// Cause of the end, as a report shows it but without measured values.
     pub(crate) words: String,
     /// Bracket of the scope that ended.
     pub(crate) bracket: u32,
@@ -52,14 +52,14 @@ pub(crate) struct Over {
     pub(crate) numbers: Vec<u32>,
 }
 
-/// State of a report: open, or closed.
+/// State of a report: open or closed.
 enum ReportState {
     Open,
     Closed(Option<io::Error>),
 }
 
 impl<'a> ReportWriter<'a> {
-    /// Returns a report that is written to `out`.
+    /// Creates a report that is written to `out`.
     pub(crate) fn new(out: &'a mut dyn Write, prompt: bool) -> Self {
         Self {
             out,
@@ -73,7 +73,7 @@ impl<'a> ReportWriter<'a> {
         }
     }
 
-    /// Returns the end of the plan, if the plan has ended.
+    /// Returns the end of the plan; `None` if the plan has not ended.
     pub(crate) fn over(&self) -> Option<&Over> {
         self.over.as_ref()
     }
@@ -108,8 +108,8 @@ impl<'a> ReportWriter<'a> {
         }
     }
 
-    /// Reports that `plan` drives the robot from the turn at time `t` on, with the atom `atom`, after it has replaced
-    /// another plan for this reason.
+    /// Reports that `plan` has replaced another plan for the reason `reason`, and drives the robot from the turn at
+    /// time `t` on, beginning with the atom `atom`.
     pub(crate) fn begins(&mut self, plan: &dyn Texts, t: Nanos, atom: Option<u32>, reason: &str) {
         self.course = RunCourse { since: reason.to_owned(), ..RunCourse::default() };
         self.over = None;
@@ -150,7 +150,7 @@ impl<'a> ReportWriter<'a> {
         }
     }
 
-    /// Writes a line of the turn at time `t`.
+    /// Writes a line about the turn at time `t`.
     fn line(&mut self, t: Nanos, line: &str) {
         let written = match self.state {
             ReportState::Open => writeln!(self.out, "{}  {}", Clocked(t), Printable(line)),
@@ -162,7 +162,7 @@ impl<'a> ReportWriter<'a> {
         }
     }
 
-    /// Reports the result of a run that had a goal.
+    /// Reports the result of a run with a goal.
     pub(crate) fn judged(&mut self, judgement: &Judgement) {
         let written = match self.state {
             ReportState::Open => writeln!(self.out, "{}", Printable(judgement)),
@@ -194,7 +194,7 @@ impl<'a> ReportWriter<'a> {
         }
     }
 
-    /// Closes the report if writing it failed, because a report is not a reason for stopping a robot.
+    /// Closes the report if writing failed. The robot is not stopped for this reason.
     fn note(&mut self, written: io::Result<()>) {
         if let Err(error) = written {
             self.state = ReportState::Closed((error.kind() != io::ErrorKind::BrokenPipe).then_some(error));
@@ -203,7 +203,7 @@ impl<'a> ReportWriter<'a> {
 }
 
 impl Over {
-    /// Returns the end of `plan` by a transition.
+    /// Returns the end of `plan`, which this transition has caused.
     fn of(plan: &dyn Texts, transition: &Transition, operands: &[Operand], cause: String) -> Self {
         let source = plan.source();
         let unmeasured: Vec<Operand> = operands.iter().map(|(number, _)| (*number, Measured::Nothing)).collect();

@@ -1,4 +1,4 @@
-//! The option `--require`: the causes by which a plan must end.
+//! The option `--require`, which names the causes by which a plan must end.
 
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use mdle_runtime::Fsm;
@@ -10,10 +10,10 @@ use crate::passes::outwards;
 use crate::position::Texts;
 use crate::report::Over;
 
-/// Minimum similarity of a proposed name, from 0 to 1.
+/// Minimum similarity, from 0 to 1, of a name that a message proposes.
 const SIMILAR: f64 = 0.75;
 
-/// Causes in the options `--require`; empty if the plan may end by any cause.
+/// Causes that the options `--require` name; empty if the plan may end by any cause.
 #[derive(Debug, Default)]
 pub(crate) struct Required {
     /// Required causes as typed on the command line.
@@ -28,11 +28,11 @@ enum RequiredCause {
     Completed,
     /// The interrupt of this bracket fired.
     Scope(u32),
-    /// An operand of a bracket's interrupt fired: the numbers of the bracket and of the operand.
+    /// An operand of a bracket's interrupt fired. Contains the number of the bracket and the number of the operand.
     Operand(u32, u32),
 }
 
-/// Returns `command` with the option `--require`.
+/// Adds the option `--require` to `command`.
 pub(crate) fn argument(command: Command) -> Command {
     command.arg(
         Arg::new("require")
@@ -85,7 +85,8 @@ impl Required {
     }
 }
 
-/// Returns the causes with the name or condition `text`, for the scopes that `may` accepts.
+/// Returns the causes that have the name or the condition `text`. Only scopes for which `may` returns `true` are taken
+/// into account.
 fn endings(plan: &dyn Texts, text: &str, may: impl Fn(u32) -> bool) -> impl Iterator<Item = RequiredCause> {
     let completed = (text == COMPLETED).then_some(RequiredCause::Completed);
     let scopes = scopes(plan.fsm()).filter(|scope| may(*scope)).flat_map(|scope| {
@@ -110,7 +111,7 @@ pub(crate) fn scopes(fsm: Fsm<'_>) -> impl Iterator<Item = u32> {
     (0..).zip(fsm.brackets).filter(move |(_, bracket)| is_scope(bracket.kind)).map(|(number, _)| number)
 }
 
-/// Returns `true` if nothing follows a scope when it ends, at least in the last pass of its enclosing loops.
+/// Returns `true` if nothing follows when a scope ends, at least in the last pass of its enclosing loops.
 fn ends_plan(fsm: Fsm<'_>, scope: u32) -> bool {
     let last = fsm.brackets.first().map(|plan| plan.last);
     outwards(fsm, scope).all(|(_, around)| {
@@ -122,7 +123,7 @@ fn ends_plan(fsm: Fsm<'_>, scope: u32) -> bool {
     })
 }
 
-/// Returns the message that the plan cannot end by this cause, with the causes by which it can end.
+/// Returns the message that the plan cannot end by this cause. The message lists the causes by which the plan can end.
 fn refused(plan: &dyn Texts, text: &str) -> String {
     let source = plan.source();
     let mut known: Vec<String> = Vec::new();

@@ -1,4 +1,4 @@
-//! The record of a robot that does not have a run of its own, such as a robot of a scenario.
+//! The record of a robot without a run of its own, such as a robot in a scenario.
 
 use std::fs::File;
 use std::io;
@@ -14,26 +14,27 @@ use crate::record::{RecordWriter, UnmadeTurn};
 use crate::supervised::Supervised;
 use crate::transitions::Transitions;
 
-/// The record of a robot that is being written. Each second of the run is written to the file when the second is over.
+/// The record of a robot, while it is being written. Each second of the run is written to the file when this second is
+/// over.
 pub struct RobotRecord(RecordWriter<RecordFile<File>>);
 
 /// A turn, for the record of a robot.
 pub struct RobotTurn<'a> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
     /// Time of the turn.
     pub t: Nanos,
     /// The output.
     pub y: &'a Sensed,
-    /// The input that is sent after the turn.
+    /// The input that the robot is sent after the turn.
     pub sent: Twist,
     /// Source of the input.
     pub kind: Turn<()>,
-    /// The plan, and the state in which the turn ended; `None` if no plan has made the turn.
+    /// The plan, and its state at the end of the turn; `None` if no plan has made the turn.
     pub plan: Option<(&'a dyn Texts, u64)>,
-    /// Number of the plan, from 1, in the order in which plans have begun.
+    /// Number of the plan, counting from 1 in the order in which plans have begun.
     pub plan_number: u64,
-    /// Reason why the plan has replaced another plan in this turn, if it has.
+    /// Reason why the plan has replaced another plan in this turn; `None` if it has not.
     pub begins: Option<&'a str>,
     /// Transitions of the turn.
     pub transitions: &'a Transitions,
@@ -77,8 +78,8 @@ impl RobotRecord {
         }
     }
 
-    /// Completes the record with the cause of the end at time `t`; `number` is the number of the last turn. The output
-    /// `y` begins the record if it has no turns.
+    /// Completes the record with the cause of the end at time `t`; `number` is the number of the last turn. If the
+    /// record has no turns, it begins with the output `y`.
     ///
     /// # Errors
     /// Fails if the file cannot be written.

@@ -3,12 +3,12 @@
 
 use mdle_runtime::SONARS;
 
-/// Settings of a robot, as texts that a user reads and types.
+/// Settings of a robot, as texts that a user can read and type.
 pub trait RobotSettings {
     /// Returns the name and a description of each setting. The result does not change in a run.
     fn settings(&self) -> &'static [(&'static str, &'static str)];
 
-    /// Returns the value of a setting as a user may type it; `None` if there is no such setting.
+    /// Returns the value of a setting in the form in which a user may type it; `None` if there is no such setting.
     fn setting(&self, name: &str) -> Option<String>;
 
     /// Changes a setting from the next exchange on.
@@ -21,7 +21,7 @@ pub trait RobotSettings {
 /// A function that returns the settings of a robot.
 pub type SettingsOf<R> = fn(&mut R) -> &mut dyn RobotSettings;
 
-/// Parses an order in which sonars ping: one to sixteen numbers of sonars, which count from 0.
+/// Parses an order in which sonars ping: one to sixteen sonar numbers, counted from 0.
 ///
 /// # Errors
 /// Returns a message with the text to type instead if the order is invalid.

@@ -1,4 +1,4 @@
-//! End of a run: the exit status, and the message on standard error. See docs/src/reference/interfaces.md, 6.3.
+//! The end of a run: exit status, and message on standard error. See docs/src/reference/interfaces.md, 6.3.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -9,11 +9,11 @@ use mdle_runtime::PrintableLines;
 use crate::Refusal;
 use crate::signals::ProcessSignal;
 
-/// Exit status after the plan has ended by any cause.
+/// Exit status when the plan has ended by any cause.
 pub(crate) const OVER: u8 = 0;
-/// Exit status if not all of several runs ended as required.
+/// Exit status when some of several runs have not ended as required.
 pub(crate) const MISSED: u8 = 1;
-/// Exit status after a bad option, world or start pose.
+/// Exit status after an invalid option, world or start pose.
 pub(crate) const USAGE: u8 = 2;
 /// Exit status after a fault that stopped the robot.
 pub(crate) const FAULT: u8 = 3;
@@ -31,29 +31,29 @@ pub(crate) enum RunEnd {
     Over,
     /// The plan has ended, but not as `--require` or `--goal` demand, for the reason in this sentence.
     Otherwise(String),
-    /// The last plan has ended before the pilot's goal, for this reason.
+    /// The last plan has ended before the pilot's goal; contains the reason.
     Failed(String),
-    /// The plan had not ended at this time.
+    /// The plan had not ended at the time limit, which is contained here.
     Timeout(Duration),
-    /// The plan had not ended after this number of turns.
+    /// The plan had not ended after the maximum number of turns, which is contained here.
     Turns(u64),
     /// The supervisor of the run requested the end.
     Quit,
-    /// A rule of the supervisor, with this name, ended the plan.
+    /// A rule of the supervisor ended the plan; contains the name of the rule.
     Safety(String),
     /// A signal requested the end.
     Signal(ProcessSignal),
-    /// The first exchange failed, before any law was applied, with this message of the robot.
+    /// The first exchange failed, before any law was applied; contains the robot's message.
     Unstarted(String),
-    /// An exchange failed, with this message of the robot.
+    /// An exchange failed; contains the robot's message.
     Robot(String),
-    /// An exchange failed, with this message of the robot, and then the stop failed too.
+    /// An exchange failed, and then the stop failed too; contains the robot's message about the exchange.
     Unstopped(String),
-    /// The run log could not be written, for this reason.
+    /// The run log could not be written; contains the reason.
     Log(String),
-    /// Too many turns took too long; the sentence gives the times.
+    /// Too many turns took too long; contains a sentence with the times.
     Overrun(String),
-    /// The turns could not continue, for this reason.
+    /// The turns could not continue; contains the reason.
     Pilot(String),
     /// The robot was without a command for `gap`, which is longer than `longest`.
     Suspended {
@@ -62,16 +62,16 @@ pub(crate) enum RunEnd {
         /// Maximum time without a command, in nanoseconds.
         longest: u64,
     },
-    /// Code panicked with this message.
+    /// Code panicked; contains the panic message.
     Bug(String),
 }
 
 impl RunEnd {
     /// Returns the exit status of the executable, given the faults after the end of the turns.
     ///
-    /// A robot that could not be stopped properly, or an incomplete log, is a fault after any end. A driven path, or a
-    /// file of [`Observer::finish`](crate::Observer::finish), that could not be written is a fault only after the end
-    /// of the plan: any other reason for the end is more important.
+    /// A failed stop, an incomplete log and a failed exchange of the final null input determine the status after any
+    /// end. An incomplete path, or an incomplete file of [`Observer::finish`](crate::Observer::finish), determines it
+    /// only after the end of the plan, because any other reason for the end is more important.
     pub(crate) fn status(&self, faults: &[RunFault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {
             RunFault::Exchange(_) | RunFault::Log(_) | RunFault::Stop(_) => true,
@@ -96,9 +96,9 @@ impl RunEnd {
         }
     }
 
-    /// Combines this end with the reason `stop` for which the stop failed, if it failed. Returns the resulting end, and
-    /// the reason if it must still be reported. After a failed exchange the reason is not reported, because the
-    /// exchange's error is sufficient and usually the same.
+    /// Combines this end with the result of stopping the robot; `stop` is the reason why the stop failed. Returns the
+    /// resulting end, and the reason if it has to be reported separately. After a failed exchange, the reason is not
+    /// reported, because the exchange's error is usually the same.
     pub(crate) fn with_stop(self, stop: Option<String>) -> (Self, Option<String>) {
         match (self, stop) {
             (Self::Unstarted(fault) | Self::Robot(fault), Some(_)) => (Self::Unstopped(fault), None),
@@ -106,9 +106,9 @@ impl RunEnd {
         }
     }
 
-    /// Returns `true` if the robot still accepts inputs. No input is sent after a failed exchange, after too long a
-    /// time without a command, or after a panic, which leaves the robot in an unknown state; the stop command is always
-    /// sent.
+    /// Returns `true` if the robot still accepts inputs. After a failed exchange, after too long a time without a
+    /// command, and after a panic, the state of the robot is unknown, so it is sent no input. The stop command is
+    /// always sent.
     pub(crate) fn robot_listens(&self) -> bool {
         match self {
             Self::Over
@@ -126,7 +126,7 @@ impl RunEnd {
         }
     }
 
-    /// Returns `true` if the robot's code can still be relied on to write the files that the options name.
+    /// Returns `true` if the robot's code is still reliable enough to write the files that the options name.
     pub(crate) fn is_orderly(&self) -> bool {
         match self {
             Self::Over
@@ -148,7 +148,7 @@ impl RunEnd {
         }
     }
 
-    /// Describes in one or two words why a run ended before its plan.
+    /// Returns one or two words about why a run ended before its plan.
     pub(crate) fn brief(&self) -> String {
         match self {
             Self::Over | Self::Otherwise(_) | Self::Failed(_) => "plan over".to_owned(),
@@ -168,7 +168,7 @@ impl RunEnd {
         }
     }
 
-    /// Returns the report of the end as one sentence, which is empty if [`RunEnd::tell`] reports nothing.
+    /// Returns the report of the end as one sentence; empty if [`RunEnd::tell`] reports nothing.
     pub(crate) fn sentence(&self, is_stopped: bool) -> String {
         let mut report = Vec::new();
         self.tell(is_stopped, &mut report);
@@ -230,9 +230,9 @@ pub(crate) enum RunFault {
     Log(io::Error),
     /// The driven path could not be written completely.
     Path(io::Error),
-    /// The stop command could not be delivered, or the robot did not stop, with this message of the robot.
+    /// The stop command could not be delivered, or the robot did not stop; contains the robot's message.
     Stop(String),
-    /// Files of the robot or of the views could not be written, with this message.
+    /// Files of the robot or of the views could not be written; contains the message.
     Finish(String),
 }
 

@@ -1,4 +1,4 @@
-//! The log of a run in the format that its name determines: JSON lines or a record.
+//! The log of a run. The name of the log's file determines its format: JSON lines or a record.
 
 use std::io;
 use std::path::Path;
@@ -20,35 +20,35 @@ pub(crate) struct RunLog {
     format: Format,
     /// `true` if the run continues without the log when it cannot be written.
     is_best_effort: bool,
-    /// `true` once writing the log has failed and the run continues.
+    /// `true` if writing the log has failed and the run continues without it.
     has_ended: bool,
     /// Time of the last turn.
     t: Nanos,
-    /// Message that the log has ended before the run, until [`RunLog::take_message`] returns it.
+    /// Message that the log has ended before the run; `None` once [`RunLog::take_message`] has returned it.
     message: Option<String>,
 }
 
 /// Format of a log, with its writer.
 #[derive(Debug)]
 pub(crate) enum Format {
-    /// JSON lines, with an object for each turn.
+    /// JSON lines, one object per turn.
     Lines(Log),
     /// A record from which the run can be replayed.
     Record(Box<RecordWriter>),
 }
 
-/// Returns `true` if the name of a log asks for a record.
+/// Returns `true` if the name of a log requests a record.
 pub fn is_record(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(MCAP))
 }
 
 impl RunLog {
-    /// Returns a log that begins; with `is_best_effort`, the run continues without the log when it cannot be written.
+    /// Creates a log that begins; with `is_best_effort`, the run continues without the log when it cannot be written.
     pub(crate) fn new(format: Format, is_best_effort: bool) -> Self {
         Self { format, is_best_effort, has_ended: false, t: Nanos::ZERO, message: None }
     }
 
-    /// Returns `true` if the log is a record, which needs more data of a turn than an entry contains.
+    /// Returns `true` if the log is a record. For a record, more data of a turn are needed than an entry contains.
     pub(crate) fn is_record(&self) -> bool {
         match self.format {
             Format::Lines(_) => false,
@@ -67,7 +67,7 @@ impl RunLog {
     /// Writes a turn that was made without a plan.
     ///
     /// # Errors
-    /// Fails if the file cannot be written, and the run must not continue without the log.
+    /// Fails if the file cannot be written and the run must not continue without a log.
     pub(crate) fn turn_without_plan(&mut self, unmade: &UnmadeTurn<'_>) -> io::Result<()> {
         self.t = unmade.t;
         self.write(|format| match format {
@@ -79,7 +79,7 @@ impl RunLog {
     /// Writes a turn.
     ///
     /// # Errors
-    /// Fails if the file cannot be written, and the run must not continue without the log.
+    /// Fails if the file cannot be written and the run must not continue without a log.
     pub(crate) fn turn(&mut self, entry: &LogEntry<'_>) -> io::Result<()> {
         self.t = entry.t;
         self.write(|format| match format {
@@ -100,7 +100,7 @@ impl RunLog {
     /// Passes all data to the system; nothing is written afterwards.
     ///
     /// # Errors
-    /// Fails if the file cannot be written, and the run must have a log.
+    /// Fails if the file cannot be written and the run must have a log.
     pub(crate) fn close(&mut self) -> io::Result<()> {
         self.write(|format| match format {
             Format::Lines(log) => log.flush(),
@@ -108,12 +108,12 @@ impl RunLog {
         })
     }
 
-    /// Removes and returns the message that the log has ended before the run.
+    /// Removes and returns the message that the log has ended before the run; `None` if there is no such message.
     pub(crate) fn take_message(&mut self) -> Option<String> {
         self.message.take()
     }
 
-    /// Calls `write` with the log, unless the log has ended.
+    /// Calls `write` with the log; does nothing if the log has already ended.
     fn write(&mut self, write: impl FnOnce(&mut Format) -> io::Result<()>) -> io::Result<()> {
         if self.has_ended {
             return Ok(());

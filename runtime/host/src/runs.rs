@@ -1,5 +1,5 @@
-//! Several runs of one plan, with robots that differ in a seed. Several threads make the runs, and the results are
-//! reported in the order of the seeds.
+//! Several runs of one plan, with robots that differ only in their seeds. Several threads make the runs, and the
+//! results are reported in the order of the seeds.
 //!
 //! The result of a run depends neither on its thread nor on simultaneous runs: each run has its own robot, clock and
 //! plan.
@@ -29,7 +29,7 @@ use crate::turn_watch::TurnWatch;
 use crate::turns::{self, Witnesses};
 use crate::{Batch, Judgement, Pace, Time};
 
-/// Time limit of runs without an option that limits them, so that no batch continues forever.
+/// Time limit for runs that no option limits, so that no batch continues forever.
 const TIMEOUT: Duration = Duration::from_secs(3600);
 
 /// Runs of a [`Batch`], without the type of its robots.
@@ -38,7 +38,8 @@ pub(crate) struct BatchRuns<'p> {
     runs: NonZeroU64,
     jobs: NonZeroUsize,
     json: bool,
-    /// Function that creates the robot for a seed, with the plan that drives it, or returns the reason why that failed.
+    /// Function that creates the robot for a seed, with the plan that drives it; the error is the reason why the robot
+    /// could not be created.
     drive: Box<dyn Fn(u64) -> Prepared<'p> + Send + Sync + 'p>,
     alone: Box<dyn Fn(u64) -> Vec<String> + Send + Sync>,
 }
@@ -47,7 +48,7 @@ pub(crate) struct BatchRuns<'p> {
 pub(crate) type Prepared<'p> = Result<Box<dyn Drive + 'p>, String>;
 
 impl<'p> BatchRuns<'p> {
-    /// Returns the runs of `batch`; `drive` gives each robot its pilot.
+    /// Creates the runs of `batch`; `drive` adds a pilot to each robot.
     pub(crate) fn of<R: 'p>(batch: Batch<R>, drive: impl Fn(R) -> Prepared<'p> + Send + Sync + 'p) -> Self {
         let Batch { first, runs, jobs, json, robot, alone } = batch;
         Self { first, runs, jobs, json, drive: Box::new(move |seed| robot(seed).and_then(&drive)), alone }
@@ -68,13 +69,13 @@ pub(crate) struct CommonTerms<'a> {
 }
 
 impl CommonTerms<'_> {
-    /// Returns the default time limit if no option limits the runs.
+    /// Returns the default time limit; `None` if an option limits the runs.
     fn by_default(&self) -> Option<Duration> {
         (self.limits.timeout.is_none() && self.limits.turns.is_none()).then_some(TIMEOUT)
     }
 }
 
-/// Makes the runs and reports them; returns the exit status, and the error if `out` could not be written.
+/// Makes the runs and reports them. Returns the exit status, and the error if writing to `out` failed.
 pub(crate) fn run(
     batch: &BatchRuns<'_>,
     terms: &CommonTerms<'_>,
@@ -117,7 +118,7 @@ pub(crate) fn run(
     (status, written.and_then(|()| out.flush()).err())
 }
 
-/// Makes runs until all runs are made or a signal arrives.
+/// Makes runs until no run is left or a signal arrives.
 fn work(batch: &BatchRuns<'_>, terms: &CommonTerms<'_>, next: &AtomicU64, done: Sender<EndedRun>) {
     loop {
         let number = next.fetch_add(1, Ordering::Relaxed);
@@ -131,7 +132,7 @@ fn work(batch: &BatchRuns<'_>, terms: &CommonTerms<'_>, next: &AtomicU64, done: 
     }
 }
 
-/// Makes the run with this seed; returns `None` if a signal interrupted it.
+/// Makes the run with this seed. Returns `None` if a signal interrupted the run.
 fn one(batch: &BatchRuns<'_>, seed: u64, terms: &CommonTerms<'_>) -> Option<EndedRun> {
     let mut run = EndedRun { seed, outcome: RunOutcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut drive = match shielded(|| (batch.drive)(seed)).unwrap_or_else(panicked) {

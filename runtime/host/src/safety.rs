@@ -1,5 +1,5 @@
-//! Protects a run against panics in code of the robot and of the plan: a panic becomes a value, so that the robot is
-//! stopped.
+//! Protects a run against panics in the code of the robot and of the plan. A panic becomes a value, so that the robot
+//! can still be stopped.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -8,7 +8,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Panicked(pub(crate) String);
 
-/// Runs `code`. After a panic, the data of `code` may be inconsistent: the robot may only be stopped.
+/// Runs `code`. After a panic, the data that `code` uses may be inconsistent, so the robot may only be stopped.
 ///
 /// # Errors
 /// Fails if the code panicked. The panic hook has then reported the place on standard error.

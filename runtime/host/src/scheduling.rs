@@ -1,4 +1,5 @@
-//! Protects turns against delays by other programs, with real-time scheduling and memory that is not paged out.
+//! Protects turns against delays that other programs cause: turns run with real-time scheduling and in memory that is
+//! never paged out.
 
 use rustix::mm::{MlockAllFlags, mlockall};
 use thread_priority::{
@@ -14,11 +15,11 @@ const SCHEDULING: &str = "real-time scheduling";
 const MEMORY: &str = "locked memory";
 
 /// Gives this thread precedence over all ordinary threads, and keeps all memory of this process in RAM. Memory that is
-/// allocated later may be paged out: a limit on locked memory would make allocations fail during a run, and a turn
-/// allocates nothing.
+/// allocated later may be paged out. If it were locked too, a limit on locked memory would make allocations fail during
+/// a run; turns themselves allocate nothing.
 ///
 /// # Errors
-/// Returns a message about a request that the system does not permit. The run continues without it.
+/// Returns a message about what the system does not permit. The run continues without it.
 pub(crate) fn claim() -> Result<(), String> {
     let is_scheduled = schedule(PRIORITY);
     let is_locked = mlockall(MlockAllFlags::CURRENT).is_ok();
@@ -27,8 +28,8 @@ pub(crate) fn claim() -> Result<(), String> {
     if refused.is_empty() { Ok(()) } else { Err(refused.join(" and ")) }
 }
 
-/// Gives this thread precedence over all ordinary threads, but not over the thread that makes the turns, for which it
-/// works. Without permission it stays an ordinary thread; the run warns about that.
+/// Gives this worker thread precedence over all ordinary threads, but not over the thread that makes the turns. Without
+/// permission, it stays an ordinary thread; the run warns about that.
 pub fn claim_for_worker() {
     let _ = schedule(PRIORITY.saturating_sub(1));
 }
@@ -44,8 +45,8 @@ fn schedule(priority: u8) -> bool {
 mod tests {
     use super::{MEMORY, PRIORITY, SCHEDULING, claim};
 
-    /// Returns the scheduling policy and real-time priority of this thread, fields 41 and 40 of proc(5), and the locked
-    /// memory in kB.
+    /// Returns the scheduling policy and the real-time priority of this thread (fields 41 and 40 of proc(5)), and the
+    /// size of its locked memory in kB.
     fn granted() -> (u32, u32, u64) {
         let stat = std::fs::read_to_string("/proc/thread-self/stat").unwrap();
         let after_name: Vec<u32> = stat

@@ -1,5 +1,5 @@
-//! Lets a second signal end a program that hangs: after the attempt to stop the robot, or after ten seconds without an
-//! attempt.
+//! Lets a second signal end a program that hangs. The program ends after the attempt to stop the robot, or after ten
+//! seconds if there is no such attempt.
 
 use std::io;
 use std::thread::{self, Builder};
@@ -14,15 +14,15 @@ use crate::run_end;
 use crate::signals::Signals;
 use crate::watch::leave_screen;
 
-/// Time that the program continues after the attempt to stop the robot, if a second signal arrived.
+/// Time for which the program continues after the attempt to stop the robot, if a second signal has arrived.
 const AFTER_THE_STOP: Duration = Duration::from_secs(1);
-/// Time that the program continues after the second signal if the robot's code hangs, so that there is no attempt to
-/// stop the robot.
+/// Time for which the program continues after a second signal if the robot's code hangs and the robot is therefore not
+/// stopped.
 const WITHOUT_A_STOP: Duration = Duration::from_secs(10);
 /// Interval at which the thread checks whether the attempt to stop the robot has ended.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Lets a second signal end the program, with the exit status known at that time. The terminal is restored.
+/// Lets a second signal end the program, with the exit status that is known at that time. Restores the terminal.
 ///
 /// # Errors
 /// Fails if the system does not permit catching a signal, or cannot create a thread.
@@ -38,7 +38,7 @@ pub(crate) fn watch(signals: &Signals) -> io::Result<()> {
     Ok(())
 }
 
-/// Ends the program some time after the attempt to stop the robot, or when there has been no attempt for too long.
+/// Ends the program some time after the attempt to stop the robot, or when there has been no such attempt for too long.
 fn end(signals: &Signals) {
     let begun = Instant::now();
     let known = loop {

@@ -1,4 +1,4 @@
-//! A complete run: options, robot, turns, and the end, at which the robot is always stopped.
+//! A complete run: reads the options, connects to the robot, makes the turns, and always stops the robot at the end.
 
 use std::io::{self, Write};
 
@@ -22,7 +22,7 @@ use crate::surroundings::{PlanData, RunSettings, Surroundings};
 use crate::target_options::TargetOptions;
 use crate::{Pace, Program, Refusal, Time};
 
-/// Runs an executable with the call `call`; returns the exit status.
+/// Runs an executable that was called as `call` describes; returns the exit status.
 pub(crate) fn session<'o, I, O>(
     program: Program<'_>,
     call: Call,
@@ -56,8 +56,7 @@ where
     }
 }
 
-/// Reads the paths that the plan replays, where the path with the name `later` may be missing, and the causes by which
-/// the plan must end.
+/// Reads the paths that the plan replays, and the causes by which the plan must end. The path `later` may be missing.
 fn prepared(
     target: &TargetOptions,
     matches: &ArgMatches,
@@ -76,7 +75,7 @@ fn prepared(
     prepared.unwrap_or_else(bug_before)
 }
 
-/// Returns the runs of a batch if the options request several runs.
+/// Returns the runs of a batch; `None` if the options request a single run.
 fn batch<'p>(
     executable: &'p dyn Executable,
     matches: &ArgMatches,

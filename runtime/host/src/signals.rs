@@ -1,4 +1,4 @@
-//! Signals that request the end of the program. They are only recorded, so that the robot is stopped first.
+//! Signals that request the end of the program. The program only records them, so that it can stop the robot first.
 
 use std::borrow::Cow;
 use std::io;
@@ -13,12 +13,12 @@ use crate::Time;
 use crate::patience::Patience;
 use crate::stop_request::StopRequest;
 
-/// A signal that requests the end of the program, by its number.
+/// A signal that requests the end of the program, given by its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct ProcessSignal(u8);
 
-/// Signals that end a program by default and can be caught. Signals with another meaning here are left out: SIGUSR1
-/// requests the timing, and SIGPIPE and SIGXFSZ are errors of the file that is written.
+/// Signals that end a program by default and can be caught. Signals with another meaning are omitted: SIGUSR1 requests
+/// a report of the timing, and SIGPIPE and SIGXFSZ indicate errors of the file that is being written.
 const NAMED: [(Number, &str); 16] = [
     (Number::HUP, "SIGHUP"),
     (Number::INT, "SIGINT"),
@@ -69,7 +69,7 @@ impl ProcessSignal {
         }
     }
 
-    /// Returns the number of the signal. For a program that the signal ended, a shell reports a status of 128 plus this
+    /// Returns the number of the signal. If a signal ends a program, a shell reports the exit status 128 plus this
     /// number.
     pub(crate) fn number(self) -> u8 {
         self.0
@@ -79,10 +79,12 @@ impl ProcessSignal {
         self.0 >= REAL_TIME.0
     }
 
-    /// Returns `true` if the program keeps ignoring this signal when the signal was ignored at its start.
+    /// Returns `true` if the program continues to ignore this signal when the signal was ignored at the program's
+    /// start.
     ///
-    /// `nohup` requires that. But a script's shell starts background jobs with SIGINT and SIGQUIT ignored, which is not
-    /// intended: a person who presses Ctrl-C wants the robot to stop.
+    /// `nohup` requires this for SIGHUP. However, a script's shell starts background jobs with SIGINT and SIGQUIT
+    /// ignored, although a person who presses Ctrl-C wants the robot to stop; the program therefore handles these two
+    /// signals, and SIGTERM, in any case.
     fn may_be_ignored(self) -> bool {
         ![Number::INT, Number::QUIT, Number::TERM].map(Self::of).contains(&self)
     }
@@ -93,18 +95,18 @@ impl ProcessSignal {
 pub(crate) struct Signals {
     /// Number of the last signal that has arrived; 0 before the first.
     caught: Arc<AtomicUsize>,
-    /// `true` if a signal ends the program at once, as by default.
+    /// `true` if a signal ends the program immediately, as signals do by default.
     deadly: Arc<AtomicBool>,
-    /// `true` if SIGUSR1 has arrived, which requests the timing of turns.
+    /// `true` if SIGUSR1 has arrived, which requests a report of the timing of turns.
     timing: Arc<AtomicBool>,
-    /// Signals that are recorded: all signals but those that were ignored at the start.
+    /// Signals that are recorded: all signals except those that were ignored at the program's start.
     noted: Vec<ProcessSignal>,
     patience: Patience,
 }
 
 impl Signals {
-    /// Starts recording the signals of this process. Signals still end the process at once, until
-    /// [`Signals::robot_runs`].
+    /// Starts recording the signals of this process. Until [`Signals::robot_runs`] is called, signals still end the
+    /// process immediately.
     ///
     /// # Errors
     /// Fails if the system does not permit catching a signal.
@@ -129,7 +131,8 @@ impl Signals {
         Ok(signals)
     }
 
-    /// Installs a handler that records a signal, or ends the program while signals end it at once.
+    /// Installs a handler for a signal. The handler records the signal, or ends the program while signals still end it
+    /// immediately.
     fn note(&self, signal: ProcessSignal) -> io::Result<()> {
         let number = i32::from(signal.number());
         if signal == ProcessSignal::of(Number::BUS) {
@@ -147,8 +150,8 @@ impl Signals {
         }
     }
 
-    /// Stops signals from ending the program: from now on they are only recorded, because the robot must be stopped
-    /// first. Output no longer delays a robot in real time.
+    /// Stops signals from ending the program. From now on, they are only recorded, because the robot must be stopped
+    /// first. Also from now on, writing output does not delay a robot in real time.
     pub(crate) fn robot_runs(&self, time: Time) {
         self.deadly.store(false, Ordering::SeqCst);
         if time == Time::Wall {
@@ -166,22 +169,22 @@ impl Signals {
         &self.patience
     }
 
-    /// Returns `true` if a signal ends the program at once.
+    /// Returns `true` if a signal ends the program immediately.
     pub(crate) fn are_deadly(&self) -> bool {
         self.deadly.load(Ordering::SeqCst)
     }
 
-    /// Returns the last signal that has arrived, if any.
+    /// Returns the last signal that has arrived; `None` before the first.
     pub(crate) fn caught(&self) -> Option<ProcessSignal> {
         u8::try_from(self.caught.load(Ordering::SeqCst)).ok().filter(|number| *number > 0).map(ProcessSignal)
     }
 
-    /// Returns the request by which code that opens a robot is informed about a signal.
+    /// Returns the request to end the run that a signal makes, for code that connects to a robot.
     pub(crate) fn stop_request(&self) -> StopRequest {
         StopRequest::of(&self.caught)
     }
 
-    /// Returns `true` if SIGUSR1 has arrived since the last call, which requests the timing of turns.
+    /// Returns `true` if SIGUSR1 has arrived since the last call; this signal requests a report of the timing of turns.
     pub(crate) fn timing_is_asked_for(&self) -> bool {
         self.timing.swap(false, Ordering::SeqCst)
     }
@@ -193,7 +196,7 @@ impl Signals {
         Self { caught, deadly: Arc::default(), timing: Arc::default(), noted: Vec::new(), patience }
     }
 
-    /// Returns another handle on the same record.
+    /// Returns another handle to the same record.
     pub(crate) fn share(&self) -> Self {
         let Self { caught, deadly, timing, noted, patience } = self;
         Self {
@@ -212,8 +215,8 @@ impl Signals {
     }
 }
 
-/// Returns the signals that this process has ignored since its start, with one bit for each signal from SIGHUP on; 0 if
-/// they are unknown.
+/// Returns the signals that this process has ignored since its start, as bits; the lowest bit is SIGHUP. Returns 0 if
+/// the signals are unknown.
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

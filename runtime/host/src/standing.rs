@@ -8,16 +8,16 @@ use crate::passes::Passes;
 use crate::position::Position;
 use crate::{EnclosingScope, PlanPosition};
 
-/// Data about the course of a run up to its last turn that the plan itself does not record.
+/// Data about the course of a run up to the last turn, in addition to the data that the plan records itself.
 #[derive(Debug, Default)]
 pub(crate) struct RunCourse {
     /// Passes of the loops.
     pub(crate) passes: Passes,
-    /// Cause of the last transition, with which the current atom began; empty for the plan's first atom.
+    /// Cause of the transition with which the current atom began; empty for the plan's first atom.
     pub(crate) since: String,
 }
 
-/// Returns the position in a plan that has not ended, and that began at time `zero`.
+/// Returns the position in a plan that began at time `zero` and has not ended.
 pub(crate) fn standing<'m>(
     position: &'m dyn Position,
     t: Nanos,

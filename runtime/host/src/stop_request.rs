@@ -1,4 +1,4 @@
-//! The request to end a run, for code that opens a robot.
+//! The request to end a run. Code that connects to a robot checks it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 /// Maximum wait between two checks of the request.
 const SLICE: Duration = Duration::from_millis(20);
 
-/// A request to end a run, which a signal makes. The default value is a request that is never made.
+/// A request to end a run; a signal makes it. The default value is a request that is never made.
 #[derive(Debug, Clone, Default)]
 pub struct StopRequest(Arc<AtomicUsize>);
 
@@ -23,13 +23,13 @@ impl StopRequest {
         Self(Arc::new(AtomicUsize::new(1)))
     }
 
-    /// Returns `true` once the run is asked to end.
+    /// Returns `true` once the request has been made.
     #[must_use]
     pub fn is_made(&self) -> bool {
         self.0.load(Ordering::SeqCst) != 0
     }
 
-    /// Waits for `time`, or until the run is asked to end.
+    /// Waits for the time `time`, or until the request has been made.
     pub fn wait(&self, time: Duration) {
         let start = Instant::now();
         while !self.is_made() {

@@ -1,5 +1,5 @@
-//! The summary of several runs: the number of runs with each outcome, their times, and a command that repeats the first
-//! run of each group.
+//! The summary of several runs: the number of runs with each outcome, the times of runs, and a command that repeats the
+//! first run of each group.
 
 use std::fmt::{self, Write as _};
 use std::time::Duration;
@@ -15,13 +15,13 @@ use crate::run_end;
 /// Runs of a batch, in the order of their seeds.
 pub(crate) struct Summary<'a> {
     pub(crate) runs: &'a [EndedRun],
-    /// Number of requested runs; more than the runs made if a signal ended the batch.
+    /// Number of requested runs. It is higher than the number of runs made if a signal ended the batch.
     pub(crate) asked: u64,
     /// Seed of the first run.
     pub(crate) first: u64,
-    /// Function that returns the options with which the run of a seed can be repeated alone.
+    /// Function that returns the options that repeat the run with a given seed alone.
     pub(crate) alone: &'a dyn Fn(u64) -> Vec<String>,
-    /// Time limit of the runs, if no option limits them.
+    /// Time limit of the runs; `None` if an option limits them.
     pub(crate) timeout: Option<Duration>,
     /// Command line of the program before its options, as typed in a shell.
     pub(crate) program: &'a str,
@@ -53,7 +53,7 @@ impl RunOutcome {
 }
 
 impl Summary<'_> {
-    /// Returns the exit status of the batch, if no signal ended it.
+    /// Returns the exit status of a batch that no signal has ended.
     pub(crate) fn status(&self) -> u8 {
         if self.count("failed") > 0 {
             run_end::FAULT
@@ -79,8 +79,8 @@ impl Summary<'_> {
         self.runs.iter().filter(|run| run.outcome.is_good())
     }
 
-    /// Returns the median time of the runs that ended as required, and the slowest of these runs; `None` if there are
-    /// none.
+    /// Returns the median time of the runs that ended as required, and the slowest of these runs; `None` if no run
+    /// ended as required.
     fn times(&self) -> Option<(Nanos, &EndedRun)> {
         let mut good: Vec<&EndedRun> = self.good().collect();
         // The sort is stable: among runs with equal times, the run with the first seed comes first.
@@ -100,7 +100,8 @@ impl Summary<'_> {
         options.fold(self.program.to_owned(), |command, word| command + " " + &quoted(&word))
     }
 
-    /// Returns groups of similar runs in the order of their first seeds. Runs that reached their goal are left out.
+    /// Returns groups of similar runs, in the order of the first seed of each group. Runs that reached their goal are
+    /// omitted.
     fn groups(&self) -> Vec<OutcomeGroup<'_>> {
         let mut groups: Vec<OutcomeGroup<'_>> = Vec::new();
         for run in self.runs.iter().filter(|run| run.outcome != RunOutcome::Arrived) {
@@ -182,8 +183,8 @@ struct OutcomeGroup<'a> {
 }
 
 impl OutcomeGroup<'_> {
-    /// Returns `true` if a run belongs to the group. Measured values and places, which differ from run to run, do not
-    /// count.
+    /// Returns `true` if a run belongs to the group. Measured values and positions are ignored, because they differ
+    /// from run to run.
     fn holds(&self, run: &EndedRun) -> bool {
         let is_alike = match (&self.first.outcome, &run.outcome) {
             (RunOutcome::Astray(_), RunOutcome::Astray(_)) => true,

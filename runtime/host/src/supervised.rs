@@ -1,11 +1,11 @@
-//! A supervisor's part in a turn, for reports.
+//! The supervisor's intervention in a turn, for reports.
 
 use crate::{Intervention, LimitedQuantity, Verdict};
 
-/// The intervention of a supervisor in a turn, and the plan that a diversion has begun.
+/// The supervisor's intervention in a turn, and the plan that the supervisor has started.
 #[derive(Debug, Default)]
 pub(crate) struct Supervised {
-    /// Strength of the intervention, if there was one.
+    /// Strength of the intervention; `None` if there was no intervention.
     pub(crate) verdict: Option<Verdict>,
     /// Rule that caused the intervention.
     pub(crate) rule: String,
@@ -15,13 +15,13 @@ pub(crate) struct Supervised {
     pub(crate) begins: Option<String>,
     /// Requests that were fulfilled before the turn.
     pub(crate) requests: Vec<String>,
-    /// Rule that last replaced the plan; empty if no rule did, or if a user has replaced the plan since.
+    /// Rule that replaced the plan last; empty if no rule has replaced it, or if a user has replaced the plan since.
     pub(crate) diverted_by: String,
 }
 
 impl Supervised {
-    /// Stores the supervisor's intervention in a turn, and the reason why another plan began in the turn, which is
-    /// empty for a diversion.
+    /// Stores the supervisor's intervention in a turn, and the reason why another plan began in this turn. The reason
+    /// is empty if the supervisor started the plan.
     pub(crate) fn note(&mut self, intervention: Option<Intervention<'_>>, begins: Option<&str>) {
         self.begins = match begins {
             Some("") => Some(format!("safety: {}", self.diverted_by)),
@@ -40,7 +40,7 @@ impl Supervised {
         }
     }
 
-    /// Returns the intervention, if there was one.
+    /// Returns the intervention; `None` if there was no intervention.
     pub(crate) fn intervention(&self) -> Option<Intervention<'_>> {
         self.verdict.map(|verdict| Intervention { verdict, rule: &self.rule, limited: self.limited })
     }

@@ -1,5 +1,5 @@
-//! The supervisor of a run, which is code between a plan and its robot, such as a safety envelope or a session with an
-//! operator. See docs/src/reference/interfaces.md, 7.6.
+//! The supervisor of a run: code between a plan and its robot, such as a safety envelope or a session with an operator.
+//! See docs/src/reference/interfaces.md, 7.6.
 
 use std::fmt;
 use std::os::fd::BorrowedFd;
@@ -13,16 +13,16 @@ use crate::{Lateness, Pace, Pilot, PlanPosition, RobotSettings, RunTerms};
 
 /// Decides which input a robot is sent, and acts between the turns that the pilot `B` makes.
 ///
-/// The supervisor runs on the thread that drives the robot: a real robot waits for it.
+/// The supervisor runs on the thread that drives the robot, so a real robot waits for it.
 pub trait Supervisor<B: Pilot> {
-    /// Returns the input that the robot is sent instead of `asked`, the plan's input of the turn with output `y` at
-    /// time `t`. Every input is passed to this function except the input before the first output; the null inputs of a
-    /// turn that is cut and of the end are passed as well.
+    /// Returns the input that the robot is sent instead of `asked`, which the plan has requested in the turn with
+    /// output `y` at time `t`. All inputs are passed to this function, including the null inputs at the end of a run
+    /// and in a turn that reaches the limit of transitions; the only exception is the input before the first output.
     fn filter(&mut self, asked: PilotInput<B>, _y: &PilotOutput<B>, _t: Nanos) -> PilotInput<B> {
         asked
     }
 
-    /// Returns the intervention of the last [`Supervisor::filter`]; `None` if it returned the plan's input.
+    /// Returns the intervention of the last [`Supervisor::filter`]; `None` if it did not change the plan's input.
     fn intervention(&self) -> Option<Intervention<'_>> {
         None
     }
@@ -30,17 +30,17 @@ pub trait Supervisor<B: Pilot> {
     /// Calls `say` with each message for the operator since the last call; called after each turn.
     fn messages(&mut self, _say: &mut dyn FnMut(&str)) {}
 
-    /// Acts before the first turn and after each turn, before the input of the turn has been sent. A call that takes
-    /// long delays a real robot; in stepped time it may take any time.
+    /// Acts before the first turn and after each turn, before the input of the turn has been sent. A long call delays a
+    /// real robot; in stepped time, a call may take any time.
     fn at_break(&mut self, _moment: &mut Break<'_, B>) -> BreakOrders {
         BreakOrders::default()
     }
 
-    /// Receives the last state of a run that ends before its plan; called before the robot is stopped. After a panic it
-    /// is not called.
+    /// Called with the last state of a run that ends before its plan, before the robot is stopped. Not called after a
+    /// panic.
     fn at_end(&mut self, _moment: &Break<'_, B>) {}
 
-    /// Receives the reason for the end of a run, as a sentence, and the exit status; called once the robot has been
+    /// Called with the reason for the end of a run, as a sentence, and the exit status, after the robot has been
     /// stopped. The sentence is empty if the plan is over, or if the supervisor has requested the end.
     fn ended(&mut self, _why: &str, _status: u8) {}
 
@@ -48,15 +48,15 @@ pub trait Supervisor<B: Pilot> {
     /// recorded run.
     fn record(&mut self) {}
 
-    /// Removes and returns the changes of the supervisor's rules before the last turn.
+    /// Removes and returns the changes of the supervisor's rules that were made before the last turn.
     fn take_changes(&mut self) -> Vec<RecordedChange> {
         Vec::new()
     }
 
-    /// Repeats a change of the supervisor's rules in a replay of a run.
+    /// Repeats a change of the supervisor's rules when a run is replayed.
     fn repeat(&mut self, _change: &RecordedChange) {}
 
-    /// Returns the requests that were fulfilled at breaks since the last call, for the log.
+    /// Returns, for the log, the requests that were fulfilled at breaks since the last call.
     fn take_requests(&mut self) -> Vec<String> {
         Vec::new()
     }
@@ -85,13 +85,13 @@ pub struct LimitedQuantity {
     pub name: &'static str,
     /// Unit of the values.
     pub unit: &'static str,
-    /// Value that the plan requested.
+    /// Value in the input that the plan requested.
     pub asked: f64,
-    /// Value that the robot is sent.
+    /// Value in the input that the robot is sent.
     pub sent: f64,
 }
 
-/// Strength of an intervention, weakest first.
+/// Strength of an intervention; the weakest comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// The robot is sent a weaker input of the same kind.
@@ -100,14 +100,14 @@ pub enum Verdict {
     HeldForward,
     /// The robot is prevented from doing what the plan requests; the plan continues.
     Held,
-    /// The next turn is the first turn of another plan, which [`Supervision::diversions`] creates for this number.
+    /// Another plan begins in the next turn: the plan that [`Supervision::diversions`] creates for this number.
     Diverted(usize),
     /// The plan is ended, and the robot is stopped.
     Ended,
 }
 
 impl Verdict {
-    /// Returns the word for the verdict in a log.
+    /// Returns the word that a log uses for the verdict.
     pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Limited => "limited",
@@ -156,11 +156,11 @@ pub struct Break<'b, B: Pilot> {
     pub y: &'b PilotOutput<B>,
     /// Input that the robot will be sent next.
     pub input: &'b PilotInput<B>,
-    /// `true` if the plan has ended: this is the last break.
+    /// `true` if the plan has ended, so that this is the last break.
     pub is_over: bool,
-    /// Pilot, for requests.
+    /// The pilot, which accepts requests.
     pub pilot: &'b mut B,
-    /// Settings of the robot, if it has any.
+    /// Settings of the robot; `None` if the robot has no settings.
     pub settings: Option<&'b mut dyn RobotSettings>,
     pub(crate) course: &'b RunCourse,
     /// Lateness and duration of the turns; `None` in stepped time, and before the second turn.
@@ -197,18 +197,19 @@ pub struct BreakOrders {
     pub end: bool,
 }
 
-/// Supervisor of a run, and the plans to which it may divert.
+/// Supervisor of a run, and the plans that it may start in place of the running plan.
 pub struct Supervision<'s, B: Pilot> {
     /// Function that creates the supervisor of a run.
     pub supervisor: &'s MakeSupervisor<'s, B>,
     /// Function that creates the plan with this number for [`Verdict::Diverted`]; it returns `None` if there is no such
     /// plan.
     pub diversions: &'s (dyn Fn(usize) -> Option<B::Plan> + Sync),
-    /// Stream for the report and messages of a session, which is a single run; the session uses standard output itself.
+    /// Stream for the report and messages of a session, because the session uses standard output itself. A session is a
+    /// single run.
     pub session: Option<BorrowedFd<'s>>,
 }
 
-/// A function that creates the supervisor of a run with these conditions.
+/// A function that creates the supervisor of a run, given the conditions of the run.
 pub type MakeSupervisor<'s, B> = dyn Fn(&RunTerms) -> Box<dyn Supervisor<B> + 's> + Sync + 's;
 
 impl<B: Pilot> Clone for Supervision<'_, B> {

@@ -14,7 +14,7 @@ use crate::required::Required;
 use crate::signals::Signals;
 use crate::turn_watch::TurnWatch;
 
-/// Environment of a run: time, signals and output; tests provide their own.
+/// Environment of a run: time, signals and output. Tests provide their own environment.
 pub(crate) struct Surroundings<'e, I, O> {
     /// Source of real time.
     pub(crate) instants: I,
@@ -30,11 +30,11 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) elapsed: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
-/// Options of a run, and words that its reports need.
+/// Options of a run, and words for its reports.
 pub(crate) struct RunSettings<'a> {
     /// Plan's name and version.
     pub(crate) program: Program<'a>,
-    /// Words by which the program was called.
+    /// Words with which the program was called.
     pub(crate) call: &'a Call,
     /// All options, including the target's own options.
     pub(crate) matches: &'a ArgMatches,
@@ -49,9 +49,9 @@ impl RunSettings<'_> {
     }
 }
 
-/// Data of the plan that the options determine.
+/// Data of the plan, as far as the options determine them.
 pub(crate) struct PlanData {
-    /// Paths that the plan replays.
+    /// Paths that the plan can replay.
     pub(crate) store: PathStore,
     /// Names of the paths in `store`.
     pub(crate) paths: Vec<&'static str>,

@@ -7,34 +7,36 @@ use mdle_runtime::Robot;
 
 use crate::{EarsOf, NamedFile, Observation, Refusal, Replays, SettingsOf, StopRequest, Time};
 
-/// A robot for which executables are built. Each target crate implements it once; a driver needs only a [`Robot`] and
-/// [`Target::connect`].
+/// A robot for which executables can be built. Each target crate implements this trait once; a driver needs only a
+/// [`Robot`] and [`Target::connect`].
 pub trait Target {
     /// Name of the target, as in `mdlec --target`.
     const NAME: &'static str;
-    /// Period of a turn without the option `--period`.
+    /// Period of a turn if the option `--period` is not given.
     const PERIOD: Duration;
     /// Type of the robot.
     type Robot: Robot + 'static;
-    /// Functions to replay and to record paths, if the alphabet has the capability `paths`: the executable then takes
-    /// `--paths` and `--record-path`.
+    /// Functions that replay and record paths; `None` if the alphabet does not have the capability `paths`. With these
+    /// functions, the executable has the options `--paths` and `--record-path`.
     const PATHS: Option<Replays<Self::Robot>> = None;
-    /// Functions that observe the robot's runs, if there are any, as for a simulator.
+    /// Functions that observe the robot's runs, such as those of a simulator; `None` if the target has no such
+    /// functions.
     const OBSERVATION: Option<Observation<Self::Robot>> = None;
 
-    /// Function that returns the settings that a user can change while the robot drives, if there are any.
+    /// Function that returns the settings that a user can change while the robot drives; `None` if there are no such
+    /// settings.
     const SETTINGS: Option<SettingsOf<Self::Robot>> = None;
 
-    /// Function that gives the robot microphones, if it can have any.
+    /// Function that gives the robot microphones; `None` if the robot cannot have any.
     const EARS: Option<EarsOf<Self::Robot>> = None;
 
-    /// Returns `command` with the target's own options.
+    /// Adds the target's own options to `command`.
     fn arguments(command: Command) -> Command {
         command
     }
 
-    /// Returns the source of time of this robot with these options; the default, for every real robot, is the wall
-    /// clock.
+    /// Returns the source of time for this robot and these options. The default is the wall clock, which is right for
+    /// every real robot.
     ///
     /// # Errors
     /// Returns a message for the operator if an option is invalid.
@@ -42,12 +44,13 @@ pub trait Target {
         Ok(Time::Wall)
     }
 
-    /// Checks that the robot, as the options configure it, has the capabilities that a plan needs. `texts` are the laws
-    /// and the conditions in the text of the plan. Called before [`Target::connect`]. A robot that always has all
-    /// capabilities of its alphabet needs no check.
+    /// Checks that the robot has the capabilities that a plan needs, if the options configure the robot. `texts`
+    /// contains the laws and the conditions of the plan as written. Called before [`Target::connect`]. A robot that
+    /// always has all capabilities of its alphabet needs no check.
     ///
     /// # Errors
-    /// Returns a message with the quark and the setting that it needs, if the robot lacks a capability (exit status 2).
+    /// If the robot lacks a capability, returns a message with the quark and the setting that the quark needs (exit
+    /// status 2).
     fn accepts(_matches: &ArgMatches, _texts: &[&str]) -> Result<(), Refusal> {
         Ok(())
     }
@@ -63,8 +66,8 @@ pub trait Target {
     /// made.
     fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Self::Robot, Refusal>;
 
-    /// Returns the files that the target's own options name; the host refuses to write a file that another option also
-    /// names.
+    /// Returns the files that the target's own options name. The host refuses to write a file if another option names
+    /// it too.
     fn files(_matches: &ArgMatches) -> Vec<NamedFile> {
         Vec::new()
     }

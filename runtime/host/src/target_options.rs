@@ -18,7 +18,7 @@ pub(crate) struct TargetOptions {
     pub(crate) files: fn(&ArgMatches) -> Vec<NamedFile>,
     pub(crate) answer: fn(&ArgMatches) -> Result<Option<String>, Refusal>,
     pub(crate) accepts: fn(&ArgMatches, &[&str]) -> Result<(), Refusal>,
-    /// Maximum speeds of a path; `None` if the target replays no paths.
+    /// Maximum speeds of a path; `None` if the target does not replay paths.
     pub(crate) fastest: Option<Twist>,
     /// `true` if a record can contain the robot's outputs and inputs.
     pub(crate) records: bool,

@@ -1,18 +1,18 @@
-//! Time of a run: the wall clock, or steps.
+//! Time of a run: the wall clock, or stepped time.
 
 /// Time of a robot: real or stepped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Time {
     /// Time of the wall clock, read after each exchange.
     Wall,
-    /// Turn `k` is exactly at `k` periods, independent of the wall clock, as in a simulated world.
+    /// Turn `k` takes place exactly at the time of `k` periods, independent of the wall clock, as in a simulated world.
     Stepped(Pace),
 }
 
 /// Pace of stepped time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pace {
-    /// A multiple of the wall clock's speed, positive and finite.
+    /// A multiple of the wall clock's speed; the factor is positive and finite.
     Times(f64),
     /// The fastest possible pace.
     Max,

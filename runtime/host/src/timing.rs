@@ -17,8 +17,8 @@ const BOUNDS: [u64; 19] = {
     bounds
 };
 
-/// Number of consecutive turns longer than the period after which a run ends, because the robot receives its commands
-/// too late.
+/// Number of consecutive turns, each longer than the period, after which a run ends because the robot receives its
+/// commands too late.
 const LIMIT: u32 = 10;
 
 /// Lateness and duration of a run's turns.
@@ -30,24 +30,25 @@ pub(crate) struct Timing {
     took: Counts,
     overruns: u64,
     in_a_row: u32,
-    /// Number of turns that were not made because the turn before them ended too late.
+    /// Number of turns that were not made because the previous turn ended too late.
     missed: u64,
 }
 
-/// Lateness of the turns of a run on a real robot: times from the scheduled start of a turn to its start.
+/// Lateness of the turns of a run on a real robot. The lateness of a turn is the time from its scheduled start to its
+/// actual start.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Lateness {
     /// Lateness that half of the turns do not exceed, rounded up to 1, 2 or 5 times a power of ten.
     pub p50: Duration,
-    /// Lateness that 99 of 100 turns do not exceed, rounded up in the same way.
+    /// Lateness that 99 of 100 turns do not exceed, rounded up to 1, 2 or 5 times a power of ten.
     pub p99: Duration,
     /// Maximum lateness.
     pub max: Duration,
-    /// Number of turns that were not made because the turn before them ended too late.
+    /// Number of turns that were not made because the previous turn ended too late.
     pub missed: u64,
 }
 
-/// Number of turns in each class.
+/// Number of turns in each class of a histogram.
 #[derive(Debug, Default)]
 struct Counts {
     classes: [u64; BOUNDS.len() + 1],
@@ -71,7 +72,7 @@ impl Timing {
         self.late.add(late);
     }
 
-    /// Records turns that are not made, because the turn before them ended too late.
+    /// Records turns that are not made because the previous turn ended too late.
     pub(crate) fn misses(&mut self, turns: u64) {
         self.missed = self.missed.saturating_add(turns);
     }
@@ -115,8 +116,8 @@ impl Counts {
         self.most = self.most.max(nanos);
     }
 
-    /// Returns a bound, in nanoseconds, that this percentage of the values does not exceed: the bound of a class, or
-    /// the maximum value if it is less.
+    /// Returns a bound, in nanoseconds, that this percentage of the values does not exceed. The result is the upper
+    /// bound of a class, or the maximum value if that is lower.
     fn within(&self, percent: u128) -> u64 {
         let total: u128 = self.classes.iter().map(|count| u128::from(*count)).sum();
         let mut so_far = 0;

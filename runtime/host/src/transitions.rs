@@ -2,15 +2,15 @@
 
 use mdle_runtime::{Measured, Transition, Watch};
 
-/// The transitions of a turn, for reports. The plan, which has their texts, is not accessible while they are made.
+/// The transitions of a turn, for reports. The texts of the plan are not accessible while the transitions are made.
 #[derive(Debug, Default)]
 pub struct Transitions {
-    /// Transitions in order, each with the total number of operands of all transitions up to and including it.
+    /// Transitions in order. Each has the total number of operands of all transitions up to and including this one.
     transitions: Vec<(Transition, usize)>,
     operands: Vec<Operand>,
 }
 
-/// An operand that has fired: its number in the interrupt of the scope that ended, and its values.
+/// An operand that has fired: its index in the interrupt of the scope that ended, and its values.
 pub type Operand = (u32, Measured);
 
 impl Transitions {

@@ -9,7 +9,7 @@ use crate::call::Call;
 use crate::target_options::TargetOptions;
 use crate::{Program, Refusal, StopRequest, Target, arguments, paths};
 
-/// Option with which a target is asked for robots that differ in a seed.
+/// Option that makes a target return robots that differ only in a seed.
 const SEVERAL: &str = "--runs=1";
 
 /// Robots that the options of a run describe, and the limits of such a run.
@@ -21,7 +21,7 @@ pub struct Trials<R> {
     robot: MakeRobot<R>,
 }
 
-/// A function that creates the robot for a seed, or a robot without random errors if there is no seed.
+/// A function that creates the robot for a seed. Without a seed, it creates a robot without random errors.
 type MakeRobot<R> = Box<dyn Fn(Option<u64>) -> Result<R, String> + Send + Sync>;
 
 impl<R> fmt::Debug for Trials<R> {
@@ -32,7 +32,7 @@ impl<R> fmt::Debug for Trials<R> {
 }
 
 impl<R> Trials<R> {
-    /// Returns the robot for a seed before its first exchange; without a seed the robot has no random errors.
+    /// Creates the robot for a seed; without a seed, the robot has no random errors.
     ///
     /// # Errors
     /// Returns a message if the robot cannot be created.
@@ -41,8 +41,8 @@ impl<R> Trials<R> {
     }
 }
 
-/// Returns the robots of the target `T` that the options of `call` describe; they can replay the paths with these
-/// names.
+/// Returns the robots of the target `T` that the options of `call` describe. The robots can replay the paths in
+/// `names`.
 ///
 /// # Errors
 /// Returns a message if an option, a world or a path is invalid, or if the target's robots cannot be started over.

@@ -1,5 +1,5 @@
-//! Limits the time of a turn. A plan or a module whose code never returns blocks the thread that drives the robot, so
-//! another thread ends the program.
+//! Limits the time of a turn. If the code of a plan or a module never returns, it blocks the thread that drives the
+//! robot, so another thread ends the program.
 
 use std::cell::RefCell;
 use std::io::{self, IsTerminal as _};
@@ -16,13 +16,14 @@ use crate::run_end;
 
 /// Time between two checks of the turns.
 const LOOK: Duration = Duration::from_millis(100);
-/// Number of checks that find the same turn, after which the program ends. Checks are counted instead of time, because
-/// a suspended computer makes no checks.
+/// Number of consecutive checks that find the same turn before the program ends. Checks are counted instead of time,
+/// because a suspended computer makes no checks.
 const LOOKS: u32 = 100;
-/// Time before the program ends, in which its writers can finish text that they have already received.
+/// Time between the decision to end the program and its end, in which writers can finish text that they have already
+/// received.
 const LAST_LINES: Duration = Duration::from_millis(300);
 
-/// Runs of a program whose turns are watched by another thread.
+/// Runs of a program, whose turns another thread watches.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TurnWatch(Arc<Mutex<Vec<ObservedRun>>>);
 
@@ -34,16 +35,16 @@ struct ObservedRun {
     looks: u32,
 }
 
-/// The turn that a run is making at present.
+/// The current turn of a run.
 #[derive(Debug)]
 pub(crate) struct WatchedRun {
-    /// Number of the turn, from 1; 0 between two turns.
+    /// Number of the turn, counted from 1; 0 between two turns.
     turn: AtomicU64,
     time: Time,
     work: Work,
 }
 
-/// The module whose code the thread of a run is running; `None` for other code.
+/// The module whose code the thread of a run is executing; `None` for other code.
 type Work = Arc<Mutex<Option<Arc<str>>>>;
 
 thread_local! {
@@ -51,8 +52,8 @@ thread_local! {
     static WORK: RefCell<Option<Work>> = const { RefCell::new(None) };
 }
 
-/// Records which module's code this thread runs from now on; `None` means other code. The report of a turn that never
-/// ends names the module. The function has no effect on a thread that makes no turn.
+/// Records the module whose code this thread executes from now on; `None` means other code. If a turn never ends, the
+/// report names this module. Has no effect on a thread that makes no turns.
 pub fn at_work(module: Option<&Arc<str>>) {
     WORK.with_borrow(|work| {
         if let Some(work) = work {
@@ -64,7 +65,7 @@ pub fn at_work(module: Option<&Arc<str>>) {
 /// A turn that did not end in time.
 #[derive(Debug, PartialEq, Eq)]
 struct Hung {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     turn: u64,
     /// Module whose code has not returned, if it is known.
     module: Option<Arc<str>>,
@@ -107,7 +108,7 @@ impl TurnWatch {
         run
     }
 
-    /// Checks all turns; returns a turn that did not end in time.
+    /// Checks the turns of all runs. Returns a turn that did not end in time; `None` if there is no such turn.
     fn look(&self) -> Option<Hung> {
         let mut hung = None;
         self.entries().retain_mut(|entry| {

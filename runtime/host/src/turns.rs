@@ -1,4 +1,4 @@
-//! The turns of a plan on a robot, and the recipients of their reports.
+//! Makes the turns of a plan on a robot, and passes reports of them to all recipients.
 
 use std::io::{self, Write};
 
@@ -30,15 +30,15 @@ use crate::{BreakOrders, Ended, Observer, Pace, Verdict};
 pub(crate) struct Witnesses<'a, 'o> {
     /// Report on standard output.
     pub(crate) report: &'a mut ReportWriter<'o>,
-    /// Run log, if the options request it.
+    /// Run log; `None` if the options do not request it.
     pub(crate) log: Option<&'a mut RunLog>,
-    /// Recorder of the driven path, if the options request it.
+    /// Recorder of the driven path; `None` if the options do not request it.
     pub(crate) path: Option<&'a mut PathRecording>,
-    /// Views by odometry, if the options request them.
+    /// Views by odometry; `None` if the options do not request them.
     pub(crate) views: Option<&'a mut ByOdometry>,
-    /// Line that shows the progress of a fast run, if standard error is a terminal.
+    /// Line that shows the progress of a fast run; `None` if standard error is not a terminal.
     pub(crate) progress: Option<ProgressLine<'a>>,
-    /// Standard error, if it does not show the progress line.
+    /// Standard error; `None` if it shows the progress line.
     pub(crate) err: Option<&'a mut dyn Write>,
 }
 
@@ -71,9 +71,9 @@ struct OnePlan<'t, 'a, 'o> {
     transitions: Transitions,
     /// `true` if no law has been applied since the current atom was entered.
     fresh: bool,
-    /// Number of the current plan, from 1; a supervisor may replace the plan.
+    /// Number of the current plan, counted from 1; a supervisor may replace the plan.
     plan: u64,
-    /// Supervisor's part in the last turn.
+    /// The supervisor's intervention in the last turn.
     supervised: Supervised,
     /// Pace that the supervisor has requested.
     pace: Option<Pace>,
@@ -89,7 +89,7 @@ impl OnePlan<'_, '_, '_> {
         if end && !is_over { Err(RunEnd::Quit) } else { Ok(()) }
     }
 
-    /// Returns how the run continues after a turn, as the plan and the supervisor's intervention determine.
+    /// Returns the continuation of the run after a turn, as determined by the plan and the supervisor's intervention.
     fn step(&mut self, turn: Turn<()>) -> Result<TurnEnd, RunEnd> {
         let Supervised { verdict, rule, diverted_by, .. } = &self.supervised;
         let after = match turn {
@@ -185,8 +185,8 @@ impl Turns for OnePlan<'_, '_, '_> {
     }
 }
 
-/// Informs the observer about a turn at time `t` of a plan that began at `zero`, and before that about the atom that
-/// began in the turn if `has_begun` is `true`.
+/// Informs the observer about a turn at time `t`, in a plan that began at `zero`. If `has_begun` is `true`, first
+/// informs it about the atom that began in this turn.
 fn watched(
     observer: &mut dyn Observer,
     position: &dyn Position,
@@ -205,7 +205,7 @@ fn watched(
     }
 }
 
-/// Returns the cause of the end of a run, in words.
+/// Returns the cause of a run's end, in words.
 fn cause(ending: &RunEnd, report: &ReportWriter<'_>) -> String {
     match (ending, report.over()) {
         (RunEnd::Failed(sentence), _) => sentence.clone(),
@@ -214,7 +214,7 @@ fn cause(ending: &RunEnd, report: &ReportWriter<'_>) -> String {
     }
 }
 
-/// Informs the observer that the turns have ended, and about the cause.
+/// Informs the observer that the turns have ended, and about the cause of the end.
 fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &RunEnd, report: &ReportWriter<'_>, t: Nanos) {
     let by = cause(ending, report);
     observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == RunEnd::Over, by: &by, t });
@@ -265,9 +265,9 @@ impl Witnesses<'_, '_> {
 #[derive(Debug, Clone, Copy)]
 struct MadeTurn {
     turn: Turn<()>,
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     number: u64,
     t: Nanos,
-    /// Number of the plan that made the turn, from 1.
+    /// Number of the plan that made the turn, counted from 1.
     plan: u64,
 }

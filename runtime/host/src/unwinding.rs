@@ -1,4 +1,4 @@
-//! Rejects, at compile time, a setting by which a panic would end the program before the robot was stopped.
+//! Rejects, at compile time, a setting with which a panic would end the program before the robot is stopped.
 
 #[cfg(panic = "abort")]
 compile_error!(

@@ -1,5 +1,6 @@
 //! The views of a run that the options of every executable request: the live view, two pictures and the table of poses.
-//! A target that knows its world shows the views itself; for all other targets they are made by odometry.
+//! A target that knows its world shows these views itself; for all other targets, the host creates them from the
+//! robot's odometry.
 
 mod by_odometry;
 
@@ -16,10 +17,10 @@ use crate::watch::{WATCH, is_asked_for};
 use crate::whole_file::WholeFile;
 use crate::{NamedFile, Refusal};
 
-/// Names of the options that name files of views, without and with dashes.
+/// Names of the options that name files of views, each without and with dashes.
 const FILES: [(&str, &str); 3] = [("plot", "--plot"), ("record", "--record"), ("trail", "--trail")];
 
-/// Returns `command` with the options of the views, which every executable has.
+/// Adds the options of the views, which every executable has, to `command`.
 #[must_use]
 pub fn view_options(command: Command) -> Command {
     let file = |name, value| Arg::new(name).long(name).value_name(value);
@@ -55,7 +56,7 @@ pub(crate) fn files(matches: &ArgMatches) -> impl Iterator<Item = NamedFile> {
     })
 }
 
-/// Returns the views that the options request, if the target does not show them itself.
+/// Returns the views that the options request; `None` if the target shows them itself or no view is requested.
 ///
 /// # Errors
 /// Fails if the robot has no known odometry, if a file cannot be written, or if there is no terminal.

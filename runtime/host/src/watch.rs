@@ -1,4 +1,5 @@
-//! The live view of `--watch`: the floor with the robot on it, the current atom, and the running time of each scope.
+//! The live view of `--watch`. It shows the floor with the robot on it, the current atom, and the elapsed time of each
+//! scope.
 
 mod canvas;
 mod map;
@@ -28,7 +29,7 @@ pub(crate) fn is_asked_for(matches: &ArgMatches) -> bool {
     matches.get_flag(WATCH)
 }
 
-/// Minimum time between two pictures: the eye cannot see faster changes.
+/// Minimum time between two pictures; the eye cannot see faster changes.
 const EVERY: Duration = Duration::from_millis(50);
 
 /// The live view that the option `--watch` requests.
@@ -36,7 +37,7 @@ pub struct Watch {
     screen: Option<Screen>,
     world: World,
     map: Option<Map>,
-    /// Positions on the path driven so far, at least a centimetre apart.
+    /// Positions on the driven path so far, at least a centimetre apart.
     way: Vec<Point>,
     echoes: Vec<Point>,
     /// Displacement of each moving object of the world; `None` for an open door.
@@ -50,8 +51,8 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Returns the live view that the options request, of a robot in `world` on standard output; it takes over the
-    /// screen at the first turn.
+    /// Returns the live view of a robot in `world` on standard output; `None` if the options do not request it. The
+    /// view takes over the screen at the first turn.
     ///
     /// # Errors
     /// Returns a message if standard output is not a terminal.
@@ -77,7 +78,8 @@ impl Watch {
         }))
     }
 
-    /// Updates the place of the robot's body, its output, and the displacement of each moving object of the world.
+    /// Updates the pose of the robot's body, the robot's output, and the displacement of each moving object of the
+    /// world.
     pub fn sensed(&mut self, body: &Footprint, sensed: &Sensed, t: Nanos, things: impl Iterator<Item = Option<Point>>) {
         let Footprint { pose, form } = body;
         let place = Point::of(pose);
@@ -91,12 +93,12 @@ impl Watch {
         (self.now.pose, self.form) = (*pose, *form);
     }
 
-    /// Updates whether the robot touches an obstacle, and the number of contacts so far.
+    /// Updates the number of contacts so far; `touches` is `true` if the robot touches an obstacle now.
     pub fn touched(&mut self, touches: bool, contacts: u64) {
         (self.now.touches, self.now.contacts) = (touches, contacts);
     }
 
-    /// Shows a turn, if it is time for a new picture. If the walls are not known, `echoes` are the places of all echoes
+    /// Shows a turn if a new picture is due. If the walls are not known, `echoes` contains the positions of all echoes
     /// so far.
     pub fn turned(&mut self, standing: &PlanPosition<'_>, echoes: &[Point]) {
         if self.shown.is_some_and(|shown| shown.elapsed() < EVERY) {

@@ -12,13 +12,13 @@ use crate::run_log::RunLog;
 use crate::safety::{Panicked, shielded};
 use crate::views::ByOdometry;
 
-/// Returns the end of a run by a panic.
+/// Returns the end of a run that was caused by a panic.
 pub(crate) fn bug(Panicked(message): Panicked) -> RunEnd {
     RunEnd::Bug(message)
 }
 
-/// Stops the robot. Returns the end of the run after the stop, `true` if the robot's code can still be relied on, and
-/// the faults.
+/// Stops the robot. Returns the end of the run after the stop, `true` if the robot's code is still reliable, and the
+/// faults.
 ///
 /// The null input is sent once more if the robot still accepts inputs; the stop command is always sent.
 pub(crate) fn stop(drive: &mut dyn Drive, ending: RunEnd) -> (RunEnd, bool, Vec<RunFault>) {
@@ -79,7 +79,7 @@ pub(crate) fn judge(
 /// Files that a run writes at its end.
 pub(crate) struct EndFiles {
     pub(crate) log: Option<RunLog>,
-    /// Error that prevented the path from being written.
+    /// Error that prevented the path from being recorded.
     pub(crate) path: Option<io::Error>,
     /// The views by odometry.
     pub(crate) views: Option<ByOdometry>,

@@ -1,5 +1,5 @@
-//! A file that an option names. The run is refused if the file cannot be written; the file is written completely or not
-//! at all.
+//! A file that an option names. If the file cannot be written, the run is refused. The file is written completely or
+//! not at all.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -10,14 +10,14 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WholeFile {
     path: PathBuf,
-    /// Path of the unfinished file, which is in the same folder, so that a rename puts the complete file in place at
-    /// once.
+    /// Path of the unfinished file. It is in the same folder as the file, so that a rename puts the complete file in
+    /// place in one step.
     unfinished: PathBuf,
 }
 
 impl WholeFile {
-    /// Returns the file at `path`, which `option` names, after a check that it can probably be written. The check
-    /// leaves no file.
+    /// Returns the file at `path`, which the option `option` names, after checking that it can probably be written. The
+    /// check leaves no file behind.
     ///
     /// # Errors
     /// Returns a message for the user if the file cannot be written.
@@ -72,7 +72,7 @@ impl WholeFile {
 #[derive(Debug)]
 pub struct Unfinished<W: Write = BufWriter<File>> {
     file: WholeFile,
-    /// Writer of the file, or the first error, which `finish` reports; nothing is written after an error.
+    /// Writer of the file, or the first error. After an error, nothing is written; `finish` reports the error.
     written: io::Result<W>,
     is_finished: bool,
 }

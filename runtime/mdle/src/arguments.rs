@@ -38,7 +38,7 @@ pub(crate) use plot::Plot;
 pub(crate) use replay::Replay;
 pub(crate) use why::{Question, Why};
 
-/// The parsed command line: a command with its arguments.
+/// The parsed command line: a command and its arguments.
 #[derive(Debug, PartialEq)]
 pub(crate) enum ParsedCommand {
     /// `mdle run` or `mdle shell`.
@@ -70,31 +70,32 @@ pub(crate) enum ParsedCommand {
 /// The arguments of `mdle run`.
 #[derive(Debug, PartialEq)]
 pub(crate) struct RunArguments {
-    /// The plan's file; `-` is standard input.
+    /// File of the plan; `-` means standard input.
     pub(crate) file: PathBuf,
-    /// Name or folder of the target; `None` for the target of the `mdle.toml` beside the plan.
+    /// Name or folder of the target; `None` for the target that the `mdle.toml` beside the plan names.
     pub(crate) target: Option<String>,
-    /// Name of the plan, for a file with several.
+    /// Name of the plan to run, for a file with several plans.
     pub(crate) plan: Option<String>,
     /// File of the safety rules.
     pub(crate) safety: Option<PathBuf>,
     /// File of the link to other robots.
     pub(crate) link: Option<PathBuf>,
-    /// Name of the path to replace by the way back after each `path` and `Follow`; `None` if no path is recorded.
+    /// Name of the path that the run replaces with the way back after each `path` and `Follow`; `None` if no path is
+    /// recorded.
     pub(crate) records: Option<String>,
-    /// Child processes to load as modules: the name of each, and its command line.
+    /// Name and command line of each child process to load as a module.
     pub(crate) modules: Vec<(String, String)>,
-    /// Point for the module `heading`, in metres; `None` if the module is not to be loaded.
+    /// Point for the module `heading`, in metres; `None` if the option does not request the module.
     pub(crate) point: Option<(f64, f64)>,
-    /// Sound for the module `heading`; `None` if the module is not to be loaded.
+    /// Source of sound for the module `heading`; `None` if the option does not request the module.
     pub(crate) ears: Option<EarsOption>,
     /// Radius of the head with the ears, in metres.
     pub(crate) head: f64,
     /// The map to create; `None` if no map is requested.
     pub(crate) map: Option<MapOption>,
-    /// `true` if warnings count as errors.
+    /// `true` if warnings are treated as errors.
     pub(crate) deny_warnings: bool,
-    /// Program and arguments of this call, without the options of the run.
+    /// Program name and arguments of this call, without the options of the run.
     pub(crate) words: Vec<OsString>,
     /// The options of the run.
     pub(crate) options: Vec<OsString>,
@@ -117,7 +118,7 @@ pub(crate) struct SessionOptions {
     pub(crate) is_paused: bool,
 }
 
-/// Options of `mdle` itself that have a value.
+/// Options that `mdle` itself parses and that have a value.
 const WITH_VALUE: [&str; 15] = [
     "--landmarks",
     "--target",
@@ -135,17 +136,17 @@ const WITH_VALUE: [&str; 15] = [
     "--commands",
     "--role",
 ];
-/// Options of `mdle navigate` itself.
+/// Options that `mdle navigate` itself parses.
 const OF_ROUTES: [&str; 2] = ["--landmarks", "--target"];
-/// Options that ask for help.
+/// Options that request help.
 const HELP: [&str; 2] = ["-h", "--help"];
-/// Options of `mdle` itself without a value.
+/// Options that `mdle` itself parses and that have no value.
 const FLAGS: [&str; 4] = ["--deny-warnings", "-e", "-x", "--paused"];
 
-/// Parses the arguments of the process, the program's own name first.
+/// Parses the arguments of the process, which begin with the program's own name.
 ///
 /// # Errors
-/// Fails if the arguments are invalid, or ask for help.
+/// Fails if the arguments are invalid, or request help.
 pub(crate) fn parse(arguments: Vec<OsString>) -> Result<ParsedCommand, Failure> {
     let words = match arguments.get(1).and_then(|command| command.to_str()) {
         Some("run" | "shell") => 1,
@@ -212,8 +213,8 @@ fn of(
     }))
 }
 
-/// Separates the options of the run from the arguments that `mdle` parses itself. The options of the run follow the
-/// first `missing` words after the command: the plan, or the graph and the landmarks of a route.
+/// Separates the options of the run from the arguments that `mdle` parses itself. The options of the run come after the
+/// first `missing` words that follow the command; these words are the plan, or the graph and the landmarks of a route.
 ///
 /// # Errors
 /// Fails if an option of the run comes before these words, or if an option does not apply to a route.
@@ -261,7 +262,7 @@ fn apart(arguments: Vec<OsString>, mut missing: usize) -> Result<(Vec<OsString>,
     Ok((own, options))
 }
 
-/// Returns the command line of `mdle`.
+/// Returns the definition of the command-line interface of `mdle`.
 pub(crate) fn command() -> Command {
     Command::new("mdle")
         .about("Run MDLe plans on robots without building them")

@@ -1,15 +1,15 @@
-//! Finds the elements of a plan that a text names, for `mdle why --not` and for tests of plans.
+//! Finds the elements of a plan to which a text refers, for `mdle why --not` and for tests of plans.
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::compile;
 use mdle_compiler::fsm::{Element, Machine};
 use mdle_files::Target;
 
-/// Returns the atoms or scopes that `text` names: the atoms with this law, in any units; if there are none, the atoms
-/// whose law has this name; if there are none either, the behaviors of this name.
+/// Returns the atoms or scopes to which `text` refers. These are the atoms with this law, in any units; if there are
+/// none, the atoms whose law has this name; and if there are none either, the behaviors with this name.
 ///
 /// # Errors
-/// Fails with a message and a help text if `text` names nothing in the plan.
+/// Fails with a message and a help text if `text` refers to nothing in the plan.
 pub(crate) fn elements_named(machine: &Machine, target: &Target, text: &str) -> Result<Vec<u32>, (String, String)> {
     let text = text.trim();
     let law = law(target, text);
@@ -33,7 +33,7 @@ fn law_of(element: Element<'_>) -> Option<&str> {
     element.atom().map(|atom| atom.law().text.as_str())
 }
 
-/// Returns the error message and the help text for a text that names no element.
+/// Returns the error message and the help text for a text that refers to no element.
 fn unnamed(machine: &Machine, text: &str) -> (String, String) {
     let once = |names: Vec<&'_ str>| {
         let mut known: Vec<String> = Vec::new();
@@ -53,8 +53,8 @@ fn unnamed(machine: &Machine, text: &str) -> (String, String) {
     (format!("the plan has no atom `{text}`{near}"), format!("the laws of its atoms are {}{scopes}", listed(&laws)))
 }
 
-/// Converts the text of a law, in any units and with any spaces, to the form of a compiled plan; `None` if the text is
-/// not a law.
+/// Converts the text of a law, in any units and with any spaces, to the form that a compiled plan has; `None` if the
+/// text is not a law.
 fn law(target: &Target, text: &str) -> Option<String> {
     let plan = format!("{{ Law (Atom (null) ({text})) }}");
     let mut sources = target.sources();

@@ -22,25 +22,25 @@ use crate::targets;
 /// Exit status if a record does not match its plan.
 const DIFFERS: u8 = 1;
 
-/// A recorded run that is replayed and examined turn by turn.
+/// A recorded run, which is replayed and examined turn by turn.
 pub(crate) struct ExaminedRun {
     run: Box<dyn RecordedRun>,
-    /// `true` if the record does not contain the plan. Inputs and the texts of transitions are then compared with the
-    /// record.
+    /// `true` if the record does not contain the plan; the inputs and the texts of transitions are then compared with
+    /// the record.
     is_compared: bool,
-    /// Description of the active safety rule and its effect; empty if no rule is active.
+    /// Description of the active safety rule and of its effect; empty if no rule is active.
     safety: String,
-    /// The guards of the safety rules with their conditions.
+    /// The guards in the safety rules, with their conditions.
     guards: Vec<Guard>,
     /// Name of the safety file.
     safety_file: String,
-    /// The plans that have been active, by their numbers.
+    /// The plans that have been active so far, by number.
     plans: BTreeMap<u64, Rc<ExaminedPlan>>,
     /// Number of the plan that was active in the last turn.
     number: u64,
 }
 
-/// A plan that has been active.
+/// A plan that has been active in the examined run.
 pub(crate) struct ExaminedPlan {
     /// The plan as a state machine.
     pub(crate) machine: Arc<Machine>,
@@ -57,13 +57,13 @@ pub(crate) struct ExaminedTurn {
     pub(crate) transitions: Transitions,
     /// The state of the plan before each transition and at the end of the turn.
     pub(crate) moments: Vec<PlanMoment>,
-    /// The input that the plan demanded.
+    /// The input that the plan's law computed, before a safety rule could replace it.
     pub(crate) asked: Twist,
     /// Reason why the plan replaced another plan; empty for the first plan.
     pub(crate) reason: String,
-    /// Description of the safety rule that is active in the turn and its effect; empty if no rule is active.
+    /// Description of the safety rule that is active in the turn, and of its effect; empty if no rule is active.
     pub(crate) safety: String,
-    /// Cause of the end of the record, if the record ends with this turn.
+    /// Cause of the end of the record; `None` unless this is the last turn of the record.
     pub(crate) end: Option<String>,
     /// Time of the next turn; `None` at the end of the record.
     pub(crate) next: Option<Nanos>,
@@ -76,7 +76,7 @@ pub(crate) enum ExaminedStop {
     Unread(ReadError),
     /// A plan that replaced another plan during the run cannot be compiled.
     Failed(Failure),
-    /// A turn does not match the record; contains the number of the turn and the difference in words.
+    /// A turn does not match the record. Contains the number of the turn, and a description of the difference.
     Differs(u64, String),
 }
 
@@ -128,7 +128,7 @@ impl ExaminedRun {
         Some(Ok(ExaminedTurn { recorded, transitions, moments, asked, reason, safety, end, next }))
     }
 
-    /// Returns `text`; if it ends with the name of a guard, the guard's condition is appended.
+    /// Returns `text`. If the text ends with the name of a guard, the guard's condition is appended.
     fn with_condition(&self, text: String) -> String {
         let rule = text.rsplit(": ").next().unwrap_or_default();
         match self.guards.iter().find(|guard| guard.name == rule) {
@@ -137,14 +137,14 @@ impl ExaminedRun {
         }
     }
 
-    /// Returns the description of the safety rule that replaced the plan in a turn with these messages; empty if no
+    /// Returns the description of the safety rule that replaced the plan in the turn with these messages; empty if no
     /// rule replaced it.
     fn diversion(&self, messages: &[Message]) -> String {
         let taken = event(messages, "plan").and_then(|text| text.split_once(": ").map(|(_, why)| why.to_owned()));
         taken.map_or_else(String::new, |why| self.with_condition(why))
     }
 
-    /// Returns plan `number`, or `None` if it has not been active.
+    /// Returns the plan with this number; `None` if it has not been active.
     pub(crate) fn plan_of(&self, number: u64) -> Option<&Rc<ExaminedPlan>> {
         self.plans.get(&number)
     }
@@ -160,8 +160,8 @@ impl ExaminedRun {
         self.run.is_whole()
     }
 
-    /// Returns the difference between a turn and the record, in words; `None` if they match. Inputs may differ
-    /// if the record contains the plan, as the next atom does not depend on them.
+    /// Returns the difference between a turn and the record, in words; `None` if they match. If the record contains the
+    /// plan, inputs may differ, because the next atom does not depend on them.
     fn difference(&self, turn: &ReplayedTurn) -> Option<String> {
         let is_input = |name: &str| matches!(name, "asked input" | "safety rule" | "input");
         if let Some(part) = turn.parts.iter().find(|part| !is_input(&part.name)) {
@@ -176,7 +176,7 @@ impl ExaminedRun {
     }
 }
 
-/// Returns the text of the last event of the kind `kind` among the messages of a turn; `None` if there is none.
+/// Returns the text of the last event of the kind `kind` in the messages of a turn; `None` if there is no such event.
 fn event(messages: &[Message], kind: &str) -> Option<String> {
     let events = messages.iter().rev().filter(|message| message.kind == MessageKind::Event);
     let mut events = events.filter_map(|message| serde_json::from_str::<serde_json::Value>(&message.json).ok());
@@ -184,7 +184,8 @@ fn event(messages: &[Message], kind: &str) -> Option<String> {
     event.get("text")?.as_str().map(str::to_owned)
 }
 
-/// Compares the texts of a turn's transitions with the record; returns the difference, or `None` if they match.
+/// Compares the texts of a turn's transitions with the record. Returns a description of the difference; `None` if they
+/// match.
 fn other_text(plan: &dyn Texts, turn: &ReplayedTurn) -> Option<String> {
     let messages = turn.messages.iter().filter(|message| message.kind == MessageKind::Transition);
     for ((transition, _), message) in turn.transitions.iter().zip(messages) {

@@ -1,4 +1,4 @@
-//! Reasons why a plan cannot be run, as messages on standard error with an exit status.
+//! Reasons why a plan cannot be run. Each is reported as a message on standard error, and has an exit status.
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
@@ -21,7 +21,7 @@ const USAGE: u8 = 2;
 /// Reason why a plan cannot be run.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// The command line is wrong, or asks for help.
+    /// The command line is invalid, or requests help.
     Unparsed(clap::Error),
     /// Wrong usage; contains the error message.
     Usage(String),
@@ -50,8 +50,8 @@ impl From<LoadError> for Failure {
 }
 
 impl Failure {
-    /// Returns the failure for an error of the command line. Removes the tip to write an option after `--`, which never
-    /// helps.
+    /// Returns the failure for an error of the command line. Removes the suggestion to write an option after `--`,
+    /// because it never helps.
     pub(crate) fn unparsed(mut error: clap::Error) -> Self {
         let is_tip = |tip: &StyledStr| tip.to_string().contains("'-- ");
         let tips = match error.remove(ContextKind::Suggested) {
@@ -116,7 +116,7 @@ pub(crate) fn unprinted(error: &io::Error) -> Failure {
     Failure::Usage(format!("standard output cannot be written: {error}"))
 }
 
-/// Returns the failure for a file that exists already.
+/// Returns the failure for a file that already exists.
 pub(crate) fn exists(path: &Path) -> Failure {
     Failure::Usage(format!("{} exists already\nhelp: remove it, or name another file", path.display()))
 }

@@ -1,4 +1,5 @@
-//! The program `mdle`: compiles a plan, loads it, and runs it as an executable of `mdlec` does, together with modules.
+//! The program `mdle`: compiles a plan, loads it, and runs it together with modules. Apart from the modules, it does
+//! the same as an executable of `mdlec`.
 //!
 //! A program with additional modules calls [`main_with`]; mdlec builds the executables of scenarios with
 //! [`scenario_files`] and [`run_scenario`].
@@ -53,15 +54,15 @@ pub use mdle_host::Program;
 use mdle_runtime::Sensed;
 pub use scenario::{is_scenario, run_scenario, scenario_files};
 
-/// Runs the command line of this process. The exit status of a run is that of an executable; 1 means that the plan has
-/// errors, and 2 wrong usage or a file that cannot be read.
+/// Runs the command line of this process. The exit status of a run is the same as for an executable; in addition, 1
+/// means that the plan has errors, and 2 that the usage is wrong or a file cannot be read.
 #[must_use]
 pub fn main() -> ExitCode {
     main_with(|_| ())
 }
 
-/// Runs the command line of this process, as [`main`] does, with the modules that `add` registers: each run
-/// loads them after the module `sensors` and before the modules of options.
+/// Runs the command line of this process, as [`main`] does, with additional modules, which `add` registers. Each run
+/// loads them after the module `sensors` and before the modules that options name.
 #[must_use]
 pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
     main_as(add, None)

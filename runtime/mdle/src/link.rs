@@ -1,4 +1,5 @@
-//! The file of `--link`: the robot's name, its address and key, and the other robots (docs/src/many_robots.md).
+//! Reads the file of `--link`, which contains the robot's name, its address and key, and the other robots
+//! (docs/src/many_robots.md).
 
 use std::io;
 use std::net::SocketAddr;
@@ -31,36 +32,36 @@ pub struct RouterSettings {
     pub link: LinkSettings,
     /// Address of the router.
     pub router: SocketAddr,
-    /// File that names the router, for messages.
+    /// File that names the router; messages show it.
     pub file: PathBuf,
 }
 
-/// Function that opens a link through a router. It does not wait until the router can be reached.
+/// Function that opens a link through a router, without waiting until the router can be reached.
 ///
 /// # Errors
 /// Fails if the system cannot create a thread.
 pub type OpenRouter = fn(&RouterSettings) -> io::Result<Box<dyn Link>>;
 
-/// Medium of a link, with its addresses.
+/// Medium of a link, with the addresses that it needs.
 #[derive(Debug)]
 enum Medium {
     Tcp(TcpSettings),
     Router(RouterSettings, OpenRouter),
 }
 
-/// A link file that has been read.
+/// Contents of a link file.
 #[derive(Debug)]
 pub(crate) struct LinkFile {
     path: PathBuf,
     medium: Medium,
-    /// Pose at which the robot's odometry begins, in the coordinates that all robots share.
+    /// Pose, in the coordinates that all robots share, at which the robot's odometry is zero.
     start: Pose,
     /// Names of the modules whose attributes the robot shares.
     shares: Vec<String>,
 }
 
 impl LinkFile {
-    /// Reads a link file, and prints warnings about its keys. The file may name a router only if `open_router` is
+    /// Reads a link file, and prints warnings about the keys in it. The file may name a router only if `open_router` is
     /// given.
     ///
     /// # Errors
@@ -97,7 +98,7 @@ impl LinkFile {
         &self.path
     }
 
-    /// Returns the name of this robot's part of a group's plan.
+    /// Returns the name of the plan that is for this robot in a group's plan.
     ///
     /// # Errors
     /// Fails if the robot is not in the group.
@@ -116,7 +117,7 @@ impl LinkFile {
     /// Checks that the link contains the robots that a plan names.
     ///
     /// # Errors
-    /// Fails if the link does not contain one of them.
+    /// Fails if the link does not contain one of these robots.
     pub(crate) fn check(&self, robots: &[&str]) -> Result<(), Failure> {
         let names: Vec<&str> = self.link().peers.iter().map(String::as_str).collect();
         let Some(unknown) = robots.iter().find(|robot| !names.contains(*robot)) else { return Ok(()) };
@@ -157,7 +158,7 @@ impl LinkFile {
     }
 }
 
-/// Returns the failure for a plan that names another robot, in a run without a link.
+/// Returns the failure for a plan that names another robot although the run has no link.
 pub(crate) fn missing(robot: &str) -> Failure {
     Failure::Usage(format!(
         "the plan names the robot `{robot}`, and there is no link to it\nhelp: `--link FILE.toml` names the robots and their \

@@ -9,14 +9,14 @@ const NO_ADDRESS: &str = "the address at which the robot listens is missing: wri
 /// Addresses in a link file.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Addresses {
-    /// The robot's own address, and the addresses of its peers in the order of the peers.
+    /// The robot's own address, and the addresses of its peers; the addresses are in the order of the peers' names.
     Tcp { listen: SocketAddr, addresses: Vec<SocketAddr> },
     /// The router's address.
     Router(SocketAddr),
 }
 
 impl Addresses {
-    /// Reads the address at which the robot listens, or the address of a router; `robots` are the names and the
+    /// Reads the address at which the robot listens, or the address of a router. `robots` contains the names and the
     /// addresses of the other robots.
     ///
     /// # Errors
@@ -47,7 +47,7 @@ impl Addresses {
     }
 }
 
-/// Reads a literal address. Refuses host names, because their lookup may take long.
+/// Parses an address in numeric form. Host names are refused, because looking them up may take long.
 fn address(text: &str) -> Result<SocketAddr, String> {
     text.parse().map_err(|_| format!("`{text}` is no address: write numbers and a port, as in `192.168.1.7:7400`"))
 }

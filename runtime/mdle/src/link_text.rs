@@ -1,4 +1,4 @@
-//! The text of the file of `--link` (docs/src/many_robots.md).
+//! Parses the text of the file of `--link` (docs/src/many_robots.md).
 
 use std::collections::BTreeSet;
 
@@ -33,7 +33,7 @@ struct WrittenLink {
 struct WrittenPeer {
     name: String,
     address: Option<String>,
-    /// Key that only the two robots know, for plans that they send each other; `None` if they send none.
+    /// Key that only the two robots know, for plans that they send to each other; `None` if they do not exchange plans.
     plans: Option<String>,
 }
 
@@ -42,7 +42,7 @@ struct WrittenPeer {
 pub(crate) struct LinkText {
     pub(crate) link: LinkSettings,
     pub(crate) addresses: Addresses,
-    /// Pose at which the robot's odometry begins, in the coordinates that all robots share.
+    /// Pose, in the coordinates that all robots share, at which the robot's odometry is zero.
     pub(crate) start: Pose,
     /// Names of the modules whose attributes the robot shares.
     pub(crate) shares: Vec<String>,
@@ -81,7 +81,7 @@ impl LinkText {
 /// Help text with a command that generates a key that is hard to guess.
 const GOOD_KEY: &str = "`openssl rand -hex 16` writes a good one";
 
-/// Checks the names of a robot and of the other robots.
+/// Checks the names of the robot and of all other robots.
 ///
 /// # Errors
 /// Fails with a message if a name is invalid, or if two robots have the same name.
@@ -101,7 +101,7 @@ fn check_names(own: &str, robots: &[WrittenPeer]) -> Result<(), String> {
 /// Returns the name of each robot with which plans are exchanged, and the key that this robot shares with it.
 ///
 /// # Errors
-/// Fails with a message if a key is empty, or is known to a third robot.
+/// Fails with a message if a key is empty, or if a third robot knows the key.
 fn plans(robots: &[WrittenPeer], key: &str) -> Result<Vec<(String, String)>, String> {
     let mut plans: Vec<(String, String)> = Vec::new();
     for WrittenPeer { name, plans: own, .. } in robots {

@@ -1,4 +1,4 @@
-//! `mdle completions` and `mdle man`: shell completions and manual pages of the command line.
+//! `mdle completions` and `mdle man`: print shell completions and manual pages.
 
 use std::io::{self, ErrorKind, Write as _};
 use std::process::ExitCode;
@@ -38,7 +38,7 @@ fn subcommand<'c>(command: &'c Command, name: &str) -> Result<&'c Command, Failu
     })
 }
 
-/// Prints a text to standard output; a closed pipe is not an error.
+/// Prints a text to standard output. A closed pipe is not an error.
 fn print(text: &[u8]) -> Result<ExitCode, Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text).and_then(|()| out.flush()) {

@@ -1,4 +1,4 @@
-//! Writes reports with spans in files to standard error.
+//! Writes messages that refer to places in files to standard error.
 
 use std::io::{self, IsTerminal as _};
 
@@ -6,7 +6,7 @@ use codespan_reporting::diagnostic::Diagnostic;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_compiler::diagnostic::{SourceId, Sources};
 
-/// Returns a count with its noun: `1 turn`, `2 turns`.
+/// Returns a count followed by its noun: `1 turn`, `2 turns`.
 pub(crate) fn counted(count: u64, thing: &str) -> String {
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }

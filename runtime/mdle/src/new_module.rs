@@ -1,5 +1,5 @@
-//! `mdle new-module`: writes a crate with a new module, and a program `mdle` that contains the module, from
-//! `runtime/mdle/template`.
+//! `mdle new-module`: writes a crate that contains a new module, and a program `mdle` that uses the module. The files
+//! come from `runtime/mdle/template`.
 
 use std::fs;
 use std::io::{self, ErrorKind, Write as _};
@@ -8,11 +8,11 @@ use std::process::ExitCode;
 
 use crate::failure::Failure;
 
-/// Word in the template's files that the module's name replaces.
+/// Word in the template's files that is replaced by the module's name.
 const NAME: &str = "template";
-/// Maximum length of a name, so that every file system accepts files that contain it.
+/// Maximum length of a name. File names contain this name, and every file system must accept them.
 const LONGEST: usize = 32;
-/// Names that other modules and packages of a program already have.
+/// Names that are already used by other modules and packages of a program.
 const TAKEN: [&str; 8] = ["mdle", "sensors", "heading", "test", "libm", "core", "std", "alloc"];
 /// Keywords of Rust, which cannot be names of crates.
 const WORDS: [&str; 38] = [
@@ -38,11 +38,11 @@ const FILES: [(&str, &str); 5] = [
 pub(crate) struct NewModule {
     /// Name of the module and of its folder.
     pub(crate) name: String,
-    /// Folder of a checkout of mdle; `None` for `../mdle` of the new folder.
+    /// Folder of a checkout of mdle; `None` for `../mdle`, relative to the new folder.
     pub(crate) checkout: Option<PathBuf>,
 }
 
-/// Writes the folder, completely or not at all, and prints the next steps.
+/// Writes the folder, either completely or not at all, and prints the next steps.
 pub(crate) fn new_module(arguments: &NewModule) -> Result<ExitCode, Failure> {
     let name = arguments.name.as_str();
     must_be_free(name)?;
@@ -69,7 +69,7 @@ pub(crate) fn new_module(arguments: &NewModule) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the failure for a name that an existing file or folder has.
+/// Returns the failure for a name that an existing file or folder already has.
 fn exists(name: &str) -> Failure {
     Failure::Usage(format!("`{name}` exists already\nhelp: take another name, or go to another folder"))
 }
@@ -82,8 +82,8 @@ fn fill(folder: &Path, name: &str, sources: &Path) -> io::Result<()> {
     FILES.iter().try_for_each(|(file, text)| fs::write(folder.join(file), named(file, text, name, sources)))
 }
 
-/// Returns the text of a template file with the module's name inserted. The manifest gets a workspace of its own
-/// instead of mdle's, and no licence, which the author chooses.
+/// Returns the text of a template file with the module's name inserted. The manifest gets its own workspace instead of
+/// mdle's, and no licence, because the author chooses the licence.
 fn named(file: &str, text: &str, name: &str, sources: &Path) -> String {
     let text = text.replace(NAME, name);
     if file != "Cargo.toml" {
@@ -99,7 +99,7 @@ fn named(file: &str, text: &str, name: &str, sources: &Path) -> String {
     packages.iter().fold(text, |text, (ours, theirs)| text.replace(ours, theirs))
 }
 
-/// Returns the folder of a checkout of mdle, as the manifest names it.
+/// Returns the folder of a checkout of mdle in the form in which the manifest names it.
 fn sources(checkout: Option<&Path>) -> Result<PathBuf, Failure> {
     let is_checkout = |folder: &Path| folder.join("runtime/mdle/Cargo.toml").is_file();
     let Some(checkout) = checkout else {

@@ -1,5 +1,5 @@
-//! Compiles and loads plans while the robot runs: the plans of a session, and plans that other robots send. The texts
-//! are compiled like the text of the first plan.
+//! Compiles and loads plans while the robot runs. These are the plans of a session, and plans that other robots send.
+//! Their texts are compiled in the same way as the text of the first plan.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -17,17 +17,17 @@ use mdle_engine::{CompiledPlans, EngineAlphabet, PlanFacts, PlanSource, Plans, S
 use mdle_files::{FaultyFile, Input, InputError, Target, plan, read_plan};
 use mdle_host::Refusal;
 
-/// Name of a text that was typed, in diagnostics.
+/// Name, in diagnostics, of a text that a user has typed.
 const TYPED: &str = "main";
-/// Bounds on a plan that another robot sends. They are needed because a short text whose plans use other plans may
-/// require much memory.
+/// Bounds on a plan that another robot sends. They are needed because a short text may require much memory if its plans
+/// use other plans.
 const SENT: Bounds = Bounds { brackets: 10_000, operands: 10_000, text: 1_000_000, is_written_free: false };
 
 /// Maximum total length, in bytes, of the new names of modules in the plans of one robot. The process keeps these names
 /// until it ends.
 const NEW_NAMES: usize = 10_000;
 
-/// Stores the first plan of a run, and permits further plans for `target` to be loaded. Plans from other robots may
+/// Stores the first plan of a run, and permits loading further plans for `target`. Plans that other robots send may
 /// name only the robots `robots`.
 ///
 /// # Errors
@@ -44,15 +44,15 @@ pub(crate) fn begin<A: EngineAlphabet>(
     plans.store(first).map_err(Refusal::Fault)
 }
 
-/// Permits other robots to send plans for `target` that name only the robots `robots`. For simulated time: turns wait
-/// until a sent plan is compiled.
+/// Permits other robots to send plans for `target`; these plans may name only the robots `robots`. Used in simulated
+/// time, because turns wait until a sent plan is compiled.
 pub(crate) fn begin_at_once<A: EngineAlphabet>(plans: &mut Plans<A>, target: &Arc<Target>, robots: Vec<String>) {
     let (target, known) = (Arc::clone(target), PermittedNames::of(plans, robots));
     plans.compile_at_once_with(Box::new(move |source| compiled(source, &target, &known)));
 }
 
-/// Compiles a text, and loads those of its plans that no other plan of the text uses. A plan from another robot may use
-/// only the names in `known`.
+/// Compiles a text, and loads the plans that no other plan of the text uses. A plan from another robot may use only the
+/// names in `known`.
 ///
 /// # Errors
 /// Fails with a message and the diagnostics, as `mdlec check` prints them.
@@ -104,7 +104,8 @@ fn compiled<A: EngineAlphabet>(
     Ok(CompiledPlans { plans: plans.collect::<Result<_, String>>()?, warnings })
 }
 
-/// Returns the facts about a plan of the operator; `warnings` are those about its file, as `mdlec check` prints them.
+/// Returns the facts about a plan, for the operator. `warnings` are the warnings about the plan's file, as `mdlec
+/// check` prints them.
 pub(crate) fn facts(machine: &Machine, warnings: &str) -> PlanFacts {
     let warnings = if warnings.is_empty() { "no warnings" } else { warnings.trim_end() };
     PlanFacts { diagnostics: warnings.into(), analysis: analyze(machine).figures().trim_end().into() }
@@ -113,7 +114,7 @@ pub(crate) fn facts(machine: &Machine, warnings: &str) -> PlanFacts {
 /// The names that plans from other robots may use.
 struct PermittedNames {
     robots: Vec<String>,
-    /// Names of the paths of the run's first plan.
+    /// Names of the paths that the run's first plan replays.
     paths: Vec<&'static str>,
     /// For each sender, the remaining budget for new names, which stay in memory until the process ends.
     budgets: RefCell<BTreeMap<String, NameBudget>>,
@@ -128,7 +129,7 @@ impl PermittedNames {
     /// Loads the plan that another robot has sent, after checking the names that the process would keep.
     ///
     /// # Errors
-    /// Fails with a message if the plan has unknown names, too many new ones, or cannot be loaded.
+    /// Fails with a message if the plan contains unknown names or too many new names, or if it cannot be loaded.
     fn load<A: EngineAlphabet>(
         &self,
         sender: &str,
@@ -166,7 +167,8 @@ impl PermittedNames {
     }
 }
 
-/// Checks, before compilation, that a text from another robot contains at most one plan, given the names of its plans.
+/// Checks, before compilation, that a text from another robot contains at most one plan. `names` contains the names of
+/// the plans in the text.
 ///
 /// # Errors
 /// Fails with a message if there are several names.
@@ -177,7 +179,7 @@ fn one_of(names: &[String]) -> Result<(), String> {
     }
 }
 
-/// Returns the names and texts of the files of a compiled plan, its own file first.
+/// Returns the names and texts of a compiled plan's files; the plan's own file comes first.
 pub(crate) fn texts(input: &Input) -> Vec<(String, String)> {
     let names = input.files().map(|path| path.display().to_string());
     names.zip(input.texts().map(str::to_owned)).collect()
@@ -194,7 +196,7 @@ fn faulty(count: &str, diagnostics: &str) -> String {
     format!("{count} in the plan, and nothing has changed\n{}", diagnostics.trim_end())
 }
 
-/// Renders diagnostics as on a terminal without colours.
+/// Renders diagnostics in the form that a terminal without colours shows.
 pub(crate) fn rendered(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     let mut text = NoColor::new(Vec::new());
     // Writing to a vector cannot fail.

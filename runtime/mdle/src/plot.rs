@@ -42,7 +42,7 @@ pub(crate) fn plot(arguments: &Plot) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A picture that is drawn while the record is read.
+/// A picture that is being drawn while the record is read.
 enum Picture {
     /// A picture of the path before the first output of the record; contains the name of the record.
     Unbegun(String),
@@ -51,7 +51,7 @@ enum Picture {
 }
 
 impl Picture {
-    /// Appends the atoms of a plan to those of a chart; returns the number of the plan's first atom.
+    /// Appends the atoms of a plan to the atoms of a chart. Returns the index of the plan's first atom.
     fn add_atoms(&mut self, plan: &ExaminedPlan) -> usize {
         let Self::OverTime(chart) = self else { return 0 };
         let first = chart.atoms.len();
@@ -60,15 +60,15 @@ impl Picture {
     }
 }
 
-/// State of the run up to a turn.
+/// State of the run up to a certain turn.
 #[derive(Default)]
 struct Pictured {
-    /// Number of the current atom among the atoms of all plans, and the time at which it began; `None` if no atom runs.
+    /// Index of the current atom among the atoms of all plans, and the time at which the atom began; `None` if no atom
+    /// runs.
     atom: Option<(usize, Nanos)>,
-    /// Number of the current atom in its plan; `None` if no atom runs.
+    /// Index of the current atom in its plan; `None` if no atom runs.
     entered: Option<u32>,
-    /// For each plan that has been active, by its number, the number of its first atom among the atoms of all
-    /// plans.
+    /// Maps the number of each plan that has been active to the index of its first atom among the atoms of all plans.
     plans: BTreeMap<u64, usize>,
     /// Number of the active plan; `None` before the first plan begins.
     number: Option<u64>,
@@ -138,7 +138,7 @@ impl Pictured {
         }
     }
 
-    /// Draws the time spent in the current atom, at its end.
+    /// Draws the time that was spent in the current atom, when the atom ends.
     fn leaves(&self, t: Nanos, picture: &mut Picture) {
         if let (Some((atom, since)), Picture::OverTime(chart)) = (self.atom, picture)
             && since < t

@@ -1,10 +1,10 @@
-//! Records as commands read them, and the parts of a turn in which a run differs from its record.
+//! Records in the form that commands read, and the parts of a turn in which a run differs from its record.
 
 use std::io::{BufReader, Read};
 
 use mdle_record::Records;
 
-/// Text shown instead of a law at the end of a plan.
+/// Text that is shown instead of a law at the end of a plan.
 pub(crate) const OVER: &str = "plan over";
 
 /// Source of the bytes of a record.
@@ -24,7 +24,7 @@ pub(crate) struct DifferingPart {
 }
 
 impl DifferingPart {
-    /// Returns a part called `name`; an empty text is shown as `none`.
+    /// Creates a part called `name`; an empty text is shown as `none`.
     pub(crate) fn new(name: &str, recorded: &str, replayed: &str) -> Self {
         let [recorded, replayed] = [recorded, replayed].map(|text| if text.is_empty() { "none" } else { text });
         Self { name: name.to_owned(), recorded: recorded.to_owned(), replayed: replayed.to_owned() }

@@ -1,4 +1,4 @@
-//! Plans compiled from texts in a record, instead of files on the disk.
+//! Compiles plans from texts in a record instead of files on the disk.
 
 use std::path::{Path, PathBuf};
 
@@ -11,11 +11,11 @@ use mdle_files::{InputError, Target, normal};
 
 use crate::failure::{self, Failure};
 
-/// Compiles the plan `wanted` from `files`, the first of which is the plan's own file. Without a name, compiles the
-/// only plan that no other plan uses.
+/// Compiles the plan `wanted` from `files`; the first file is the plan's own file. Without a name, compiles the only
+/// plan that no other plan uses.
 ///
 /// # Errors
-/// Fails if the plan has errors, or if there is none.
+/// Fails if the plan has errors, or if there is no plan.
 pub(crate) fn compiled(
     files: &[(String, String)],
     wanted: Option<&str>,
@@ -30,10 +30,10 @@ pub(crate) fn compiled(
     Ok((machine, files.sources))
 }
 
-/// Returns the machine of the only plan, unless the diagnostics have errors, which are printed.
+/// Returns the machine of the only plan. If the diagnostics contain errors, prints them.
 ///
 /// # Errors
-/// Fails if the plan has errors, or if there is none.
+/// Fails if the plan has errors, or if there is no plan.
 pub(crate) fn only(
     plans: Vec<Compiled>,
     diagnostics: &[Diagnostic],
@@ -55,9 +55,9 @@ pub(crate) fn only(
 struct RecordedFiles<'b> {
     sources: Sources,
     own: SourceId,
-    /// Files that the plan uses, by their names in the record.
+    /// Files that the plan uses, with their names in the record.
     used: &'b [(String, String)],
-    /// Names of the files that were added to the sources.
+    /// Names of the files that have been added to the sources.
     names: Vec<(SourceId, PathBuf)>,
 }
 

@@ -2,11 +2,11 @@
 
 use mdle_runtime::{PathStore, Sensed, Setpoint, StoredPath};
 
-/// The paths that were recorded so far. They stay in memory until the program ends, as the paths of a run do.
+/// The paths that have been recorded so far. They stay in memory until the program ends, as all paths of a run do.
 #[derive(Debug, Default)]
 pub(crate) struct RecordedPaths {
     recorded: Vec<StoredPath>,
-    /// All paths of the robot, including the recorded ones; `None` after a recording, until they are needed.
+    /// All paths of the robot, including the recorded ones; `None` after a recording, until the paths are needed.
     store: Option<PathStore>,
 }
 
@@ -21,7 +21,7 @@ impl RecordedPaths {
         }
     }
 
-    /// Replaces the paths of an output by the recorded paths of the same names.
+    /// Replaces the paths in an output with recorded paths that have the same names.
     pub(crate) fn complete(&mut self, y: &mut Sensed) {
         if self.recorded.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! `mdle replay`: re-executes a recorded run, and compares it with the record to the bit.
+//! `mdle replay`: executes a recorded run again, and compares it with the record bit by bit.
 
 use std::fs::File;
 use std::io::{self, BufReader, IsTerminal as _, Read, Write as _};
@@ -31,8 +31,7 @@ const DIFFERS: u8 = 1;
 /// Maximum number of turns that are printed after the first difference.
 const ROWS: usize = 20;
 
-/// Re-executes a record; returns 0 if the run matches the record, and 1 if it differs or the record was
-/// changed.
+/// Executes a record again. Returns 0 if the run matches the record, and 1 if it differs or the record was changed.
 ///
 /// # Errors
 /// Fails if the record or the plan cannot be read.
@@ -110,13 +109,13 @@ pub(crate) struct WantedPlan<'a> {
     /// File of the plan; `None` for the text in the record.
     pub(crate) file: Option<&'a Path>,
     pub(crate) begin: &'a Begin,
-    /// The call without `--plan`, for messages.
+    /// The call without `--plan`, as messages show it.
     pub(crate) call: &'a str,
     /// `true` if the plan must be the plan that ran.
     pub(crate) has_run: bool,
 }
 
-/// Compiles the plan of a record, or the plan of the same name in a file.
+/// Compiles the plan of a record, or the plan with the same name in a file.
 ///
 /// # Errors
 /// Fails if the plan cannot be read, has errors, or is not the plan of the record, or if the record does not
@@ -154,8 +153,8 @@ pub(crate) fn plan(wanted: &WantedPlan<'_>, target: &Target) -> Result<(Machine,
     Ok((machine, input.sources))
 }
 
-/// Returns a description of the first difference between the texts of a plan and the texts in the record; `None` if
-/// there is none.
+/// Returns a description of the first difference between the texts of a plan and the texts in the record; `None` if the
+/// texts are the same.
 fn difference(input: &Input, begin: &Begin) -> Option<String> {
     if begin.files.is_empty() {
         return None;
@@ -171,7 +170,7 @@ fn difference(input: &Input, begin: &Begin) -> Option<String> {
     recorded.next().map(|_| "it uses fewer files".to_owned())
 }
 
-/// Prints the outcome for the plan called `plan`.
+/// Prints the outcome of a replay; `plan` is the name of the plan.
 fn tell(outcome: &ReplayOutcome, plan: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     match outcome {
@@ -193,8 +192,8 @@ fn tell(outcome: &ReplayOutcome, plan: &str) -> io::Result<()> {
     }
 }
 
-/// Returns a table of the transitions from the first different turn on, the record's beside those of the other plan;
-/// empty if there are none.
+/// Returns a table of the transitions from the first turn that differs. It shows the transitions of the record beside
+/// those of the other plan; empty if there are no transitions.
 fn side_by_side(after: &[Parting], plan: &str) -> String {
     if after.is_empty() {
         return String::new();

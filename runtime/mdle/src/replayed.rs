@@ -14,25 +14,25 @@ pub(crate) enum ReplayOutcome {
     Same {
         /// Number of turns.
         turns: u64,
-        /// `true` if the record has an end, or if the replay ended before it as requested.
+        /// `true` if the record has an end, or if the replay ended earlier as requested.
         is_whole: bool,
     },
     /// A turn differs from the record.
     Differs(Difference),
-    /// The turns up to this number match the record, and the next turn cannot be read.
+    /// The turns up to this number match the record; the next turn cannot be read.
     Unread(u64, ReadError),
 }
 
-/// The first turn that differs.
+/// The first turn that differs from the record.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Difference {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) turn: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
-    /// The parts that differ.
+    /// The parts of the turn that differ.
     pub(crate) parts: Vec<DifferingPart>,
-    /// The later turns with transitions, from this turn on; empty unless they were requested.
+    /// This turn and the later turns that have transitions; empty unless they were requested.
     pub(crate) after: Vec<Parting>,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct Parting {
 /// The part of a record to replay, and the extent of the comparison.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReplayTerms {
-    /// Time of the last turn; `None` for all.
+    /// Time of the last turn to replay; `None` to replay all turns.
     pub(crate) until: Option<Nanos>,
     /// `true` if the plan continues after the first turn that differs.
     pub(crate) goes_on: bool,

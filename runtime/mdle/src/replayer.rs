@@ -1,4 +1,4 @@
-//! Replays the turns of a record: the engine makes them again with the recorded outputs, plans and safety rules.
+//! Replays the turns of a record. The engine makes the turns again, with the recorded outputs, plans and safety rules.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -33,7 +33,7 @@ pub(crate) trait RecordedRun {
     /// if the plan has not begun, or is not observed.
     fn looked_at(&self) -> Option<(&Arc<fsm::Machine>, &[PlanMoment])>;
 
-    /// Returns the texts of the plan that was active in the last turn; `None` if it has not begun, or is not
+    /// Returns the texts of the plan that was active in the last turn; `None` if the plan has not begun, or is not
     /// observed.
     fn texts(&self) -> Option<Box<dyn Texts>>;
 
@@ -50,17 +50,17 @@ pub(crate) trait RecordedRun {
 pub(crate) struct ReplayedTurn {
     /// The turn as recorded.
     pub(crate) recorded: RecordedTurn,
-    /// The messages about the turn in the record.
+    /// The messages about this turn in the record.
     pub(crate) messages: Vec<Message>,
     /// The parts that differ from the record.
     pub(crate) parts: Vec<DifferingPart>,
-    /// The laws that began in the turn, in order; [`OVER`] for the end of the plan.
+    /// The laws that began in the turn, in order. The end of the plan is represented by [`OVER`].
     pub(crate) laws: Vec<String>,
-    /// Law of the atom in which the turn ended; empty if there is none.
+    /// Law of the atom in which the turn ended; empty if there is no such atom.
     pub(crate) law: String,
     /// The transitions, with their operands.
     pub(crate) transitions: Transitions,
-    /// The input that the plan demanded.
+    /// The input that the plan's law computed, before a safety rule could replace it.
     pub(crate) asked: Twist,
     /// Reason why the plan replaced another plan; empty for the first plan.
     pub(crate) reason: String,
@@ -75,7 +75,8 @@ pub(crate) enum ReplayStop {
     Failed(Failure),
 }
 
-/// Returns the replay of a record whose first plan has the machine `machine`; plans are observed if `looks` is `true`.
+/// Creates the replay of a record. The machine of the record's first plan is `machine`; plans are observed if `looks`
+/// is `true`.
 ///
 /// # Errors
 /// Fails if the plan or a safety rule cannot be loaded.
@@ -118,7 +119,7 @@ fn loaded<A: EngineAlphabet>(
     Ok(Arc::new(if looks { loaded.looked_at(Arc::new(machine)) } else { loaded }).plan())
 }
 
-/// Returns the supervisor of a run under these rules.
+/// Returns the supervisor for a run with these safety rules.
 fn supervised<A>(safety: Arc<Guarded<A>>, period: Duration) -> Supervised<'static, Engine<A>>
 where
     A: EngineAlphabet<Output = Sensed, Input = Twist>,
@@ -135,9 +136,9 @@ struct ReplayOf<A: EngineAlphabet<Output = Sensed, Input = Twist>> {
     helm: Helm<'static, Engine<A>>,
     record: TurnsWithMessages<RecordSource>,
     target: Arc<Target>,
-    /// The files of the plans that replaced other plans, by their numbers in the record.
+    /// Files of the plans that replaced other plans, by their numbers in the record.
     files: Vec<Vec<(String, String)>>,
-    /// The paths that were recorded.
+    /// Paths that have been recorded so far.
     paths: RecordedPaths,
     /// `true` if plans are observed.
     looks: bool,
@@ -300,7 +301,7 @@ fn words(applied: Applied) -> String {
     .to_owned()
 }
 
-/// Returns the recorded transitions of a turn as text, with the conditions as in the plan that ran.
+/// Returns the recorded transitions of a turn as text, with the conditions of the plan that ran.
 fn recorded_transitions(messages: &[Message]) -> String {
     let transitions = messages.iter().filter(|message| message.kind == MessageKind::Transition).filter_map(|message| {
         let json: serde_json::Value = serde_json::from_str(&message.json).ok()?;

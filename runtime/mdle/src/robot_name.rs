@@ -5,7 +5,7 @@ const LONGEST: usize = 64;
 /// Description of valid robot names, for error messages.
 pub(crate) const FORM: &str = "a name is a letter, then letters, digits and `_`, at most 64";
 
-/// Returns `true` if `name` is a valid name of a robot. It must be valid in plans as well.
+/// Returns `true` if `name` is a valid name of a robot, which is also valid in plans.
 pub(crate) fn is_robot_name(name: &str) -> bool {
     let mut letters = name.chars();
     letters.next().is_some_and(|first| first.is_ascii_alphabetic())

@@ -92,13 +92,13 @@ pub(crate) fn run(
     Ok(map.map_or(status, |map| saved(&map, status)))
 }
 
-/// Returns the map of a run.
+/// Creates the map of a run.
 fn map_run(map: &MapOption) -> Result<MapRun, Failure> {
     let origin = pose("--map-at", &map.at)?;
     Ok(MapRun::new(origin, MapFiles::new(&map.file, Some(&map.file.with_extension("png")))?))
 }
 
-/// Saves the map of a run that has ended with this status; returns the exit status.
+/// Saves the map of a run that has ended with the exit status `status`. Returns the resulting exit status.
 fn saved(map: &MapRun, status: ExitCode) -> ExitCode {
     match map.save() {
         Ok(Saved::Map | Saved::NoTurn) => status,
@@ -120,12 +120,13 @@ fn no_call() -> Call {
 }
 
 impl RunArguments {
-    /// Returns `true` if the run has no module `heading`; `false` in a session, which may load one later.
+    /// Returns `true` if the run has no module `heading`. Returns `false` in a session, because a session may load the
+    /// module later.
     fn lacks_heading(&self, library: &Library<Sensed>) -> bool {
         self.ears.is_none() && self.session.is_none() && library.admits(HEADING).is_ok()
     }
 
-    /// Opens the sound of `--ears`; returns `None` without this option.
+    /// Opens the source of sound that `--ears` names; returns `None` without this option.
     fn hearing(&self) -> Result<Option<SoundInput>, Failure> {
         let Some(ears) = &self.ears else { return Ok(None) };
         let source = AudioSource::open(ears).map_err(Failure::Usage)?;
@@ -133,13 +134,13 @@ impl RunArguments {
     }
 }
 
-/// Returns the entry of the settings for a safety file; `None` if there is none, or if the arguments name a safety
-/// file.
+/// Returns the entry for a safety file in the settings; `None` if there is no such entry, or if the arguments name a
+/// safety file.
 fn safety_entry(arguments: &RunArguments, settings: &Settings) -> Option<SafetyEntry> {
     settings.safety().filter(|_| arguments.safety.is_none())
 }
 
-/// Reads the safety file of a run, if it has one.
+/// Reads the safety file of a run; `None` if the run has no safety file.
 fn safety_file(arguments: &RunArguments, settings: &Settings) -> Result<Option<SafetyFile>, Failure> {
     if let Some(SafetyEntry { place, file }) = safety_entry(arguments, settings) {
         return SafetyFile::read(&file, &format!("{place}: ")).map(Some);
@@ -147,8 +148,8 @@ fn safety_file(arguments: &RunArguments, settings: &Settings) -> Result<Option<S
     arguments.safety.as_deref().map(|file| SafetyFile::read(file, "")).transpose()
 }
 
-/// Returns the arguments that the settings add to a run with `arguments`, except the options of the run. `target` is
-/// the name of the run's target.
+/// Returns the arguments that the settings add to `arguments`, except the options of the run. `target` is the name of
+/// the run's target.
 fn determining(arguments: &RunArguments, settings: &Settings, target: &str) -> Vec<String> {
     let target = arguments.target.is_none().then(|| ["--target".to_owned(), target.to_owned()]);
     let modules = modules::only_of_settings(settings, arguments);
@@ -158,7 +159,8 @@ fn determining(arguments: &RunArguments, settings: &Settings, target: &str) -> V
     target.into_iter().flatten().chain(modules).chain(safety.into_iter().flatten()).collect()
 }
 
-/// Lists the inputs of a run besides the plan and the robot's outputs; empty if there are none.
+/// Returns a list of the inputs of a run other than the plan and the robot's outputs; empty if there are no such
+/// inputs.
 fn beside(arguments: &RunArguments, ready: &dyn ReadyPlan) -> String {
     let parts: [(bool, &str); 5] = [
         (ready.safety().is_some(), "safety rules"),
@@ -170,8 +172,8 @@ fn beside(arguments: &RunArguments, ready: &dyn ReadyPlan) -> String {
     parts.into_iter().filter_map(|(is_there, words)| is_there.then_some(words)).collect::<Vec<_>>().join(" and ")
 }
 
-/// Compiles and loads the plan `wanted`, or the only plan; returns its name and the plan. Messages go to standard
-/// error.
+/// Compiles and loads the plan `wanted`; without a name, the only plan. Returns the name of the plan, and the loaded
+/// plan. Messages go to standard error.
 fn compiled(
     arguments: &RunArguments,
     wanted: Option<&str>,

@@ -1,4 +1,4 @@
-//! The file of `--safety`: its rules, and the plans to which they divert.
+//! Reads the file of `--safety`: the safety rules, and the plans that rules start in place of the running plan.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -23,7 +23,7 @@ pub(crate) struct SafetyFile {
     path: PathBuf,
     text: String,
     rules: Rules,
-    /// The files of the plans to which rules divert, from a record; `None` for files on the disk.
+    /// The files, from a record, of the plans that rules start; `None` if these plans are files on the disk.
     recorded: Option<Vec<Vec<(String, String)>>>,
 }
 
@@ -36,8 +36,8 @@ pub(crate) struct Guarded<A: Alphabet> {
 }
 
 impl SafetyFile {
-    /// Reads the file. `named` is the prefix of the error message if the file cannot be read: the place where another
-    /// file names this file, or empty.
+    /// Reads the file. `named` is a prefix for the error message about an unreadable file: the place where another file
+    /// names this file, or an empty text.
     ///
     /// # Errors
     /// Fails if the file cannot be read, or is not a safety file.
@@ -61,15 +61,15 @@ impl SafetyFile {
         Ok(Self { path: path.to_owned(), text, rules, recorded })
     }
 
-    /// Returns the paths of the safety file itself and of the plans to which rules divert.
+    /// Returns the paths of the safety file and of the plans that rules start.
     pub(crate) fn files(&self) -> impl Iterator<Item = PathBuf> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let plans = self.rules.plans.iter().map(|plan| folder.join(&plan.file));
         [self.path.clone()].into_iter().chain(plans)
     }
 
-    /// Compiles the conditions and the plans for the robot of a target; plans are observed if `looks` is
-    /// `true`.
+    /// Compiles the conditions of the rules, and the plans that rules start, for the robot of a target. Plans are
+    /// observed if `looks` is `true`.
     ///
     /// # Errors
     /// Fails if a condition or a plan has errors.
@@ -100,7 +100,7 @@ impl SafetyFile {
     }
 }
 
-/// Prints the errors of a condition.
+/// Prints the errors of a condition, and returns the failure.
 fn refused(error: GuardError, name: &str, sources: &Sources) -> Failure {
     match error {
         GuardError::Faulty(diagnostics) => {
@@ -112,12 +112,12 @@ fn refused(error: GuardError, name: &str, sources: &Sources) -> Failure {
     }
 }
 
-/// A plan to which a rule diverts, with the names and texts of its files.
+/// A plan that a rule starts in place of the running plan, with the names and texts of its files.
 type Diversion<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 
-/// A plan to which a rule diverts.
+/// A plan that a rule starts in place of the running plan.
 struct NamedPlan {
-    /// Place where the safety file names the plan, as in `rules.toml:3`.
+    /// Place where the safety file names the plan, such as `rules.toml:3`.
     place: String,
     /// The plan's file.
     file: PathBuf,
@@ -130,7 +130,7 @@ impl NamedPlan {
     }
 }
 
-/// Compiles and loads a plan to which a rule diverts, from a file or from the texts of a record.
+/// Compiles and loads a plan that a rule starts, either from a file or from texts in a record.
 fn diversion<A: Alphabet>(
     named: &NamedPlan,
     recorded: Option<&[(String, String)]>,
@@ -174,17 +174,17 @@ impl<A: Alphabet> Guarded<A> {
         Guardian::new(self.rules.clone(), &self.conditions, period)
     }
 
-    /// Returns the texts of the rules and of the plans to which they divert.
+    /// Returns the texts of the rules, and of the plans that rules start.
     pub(crate) fn texts(&self) -> &SafetyTexts {
         &self.texts
     }
 
-    /// Returns the attributes of modules that the rules read.
+    /// Returns the module attributes that the rules read.
     pub(crate) fn reads(&self) -> &'static [ModuleRead] {
         self.conditions.reads()
     }
 
-    /// Returns plan `number` among the plans to which rules divert; `None` if there is no such plan.
+    /// Returns the plan with this number among the plans that rules start; `None` if there is no such plan.
     pub(crate) fn diversion(&self, number: usize) -> Option<load::LoadedPlan<A>> {
         self.diversions.get(number).map(Loaded::plan)
     }

@@ -19,20 +19,20 @@ use crate::terminal::{HeldTerminal, Printing};
 
 /// Maximum wait, after a run, for the last answer of the front end.
 const LAST_ANSWER: Duration = Duration::from_secs(1);
-/// Exit status for a session in which a command was refused.
+/// Exit status for a session in which a command has been refused.
 const REFUSED: u8 = 1;
 
-/// Data that a run needs for its session.
+/// Data that a run needs in order to serve its session.
 pub(crate) struct SessionInputs {
     pub(crate) desk: Desk,
     /// `true` if stepped time is paused at the beginning of the run.
     pub(crate) is_paused: bool,
-    /// The stream to which the run reports.
+    /// Stream to which the run writes its reports.
     pub(crate) stream: OwnedFd,
 }
 
-/// Runs a session together with `run`; `plan` is the file of the plan. Returns the exit status of the run, or 1 instead
-/// of 0 if a command from a file or a pipe was refused.
+/// Runs a session together with `run`; `plan` is the file of the plan. Returns the exit status of the run. If the
+/// status would be 0 but a command from a file or a pipe was refused, returns 1.
 ///
 /// # Errors
 /// Fails if the commands cannot be read.
@@ -63,8 +63,9 @@ pub(crate) fn held(
     Ok(if !is_well && status == ExitCode::SUCCESS { ExitCode::from(REFUSED) } else { status })
 }
 
-/// Starts the front end on a separate thread: at the terminal if `printing` is given; without it, for commands from a
-/// file or from standard input. The returned channel gets `true` at the end if every command was carried out.
+/// Starts the front end on a separate thread. If `printing` is given, the front end uses the terminal; otherwise, it
+/// reads commands from a file or from standard input. At the end, the returned channel receives `true` if every command
+/// was carried out.
 fn front_end(
     options: &SessionOptions,
     plan: &Path,

@@ -23,7 +23,7 @@ const COMMANDS: [(&str, &str); 6] = [
     ("quit", "end"),
 ];
 
-/// The outcome of the steps through a record.
+/// The outcome of stepping through a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Steps {
     /// `true` if a turn differs from the record, or the record was changed.
@@ -45,17 +45,17 @@ struct ReplayedTurns<'r> {
     replay: &'r mut dyn RecordedRun,
     until: Option<Nanos>,
     made: Vec<SteppedTurn>,
-    /// Number of turns up to the turn that is shown.
+    /// Number of turns up to and including the turn that is shown.
     place: usize,
-    /// Reason why there are no more turns, once the end is reached.
+    /// Reason why there are no more turns; `None` until the end of the record is reached.
     end: Option<String>,
     differs: bool,
     /// Number of the plan that made the last turn; `None` before the first turn.
     plan: Option<u64>,
 }
 
-/// Steps through a record as `commands` says, and prints the turns on standard output. `is_typed` is `true` if a person
-/// types the commands.
+/// Steps through a record as the lines of `commands` request, and prints the turns on standard output. `is_typed` is
+/// `true` if a person types the commands.
 ///
 /// # Errors
 /// Fails if a plan that replaced another plan during the run cannot be compiled, or if standard output cannot be
@@ -88,9 +88,9 @@ pub(crate) fn step(
     Ok(Steps { differs: turns.differs, is_refused })
 }
 
-/// Reason why a command is not carried out.
+/// Reason why a command was not carried out.
 enum RefusedCommand {
-    /// The command is wrong; contains the error message.
+    /// The command is invalid; contains the error message.
     Sentence(String),
     /// A plan cannot be compiled.
     Failure(Failure),
@@ -103,7 +103,7 @@ impl From<Failure> for RefusedCommand {
 }
 
 impl ReplayedTurns<'_> {
-    /// Carries out a command; returns its answer, or `None` for the end of the session.
+    /// Carries out a command. Returns the answer; `None` if the command ends the session.
     fn command(&mut self, line: &str) -> Result<Option<String>, RefusedCommand> {
         let (word, argument) = line.split_once(' ').map_or((line, ""), |(word, argument)| (word, argument.trim()));
         if ["next", "help", "quit"].contains(&word) && !argument.is_empty() {
@@ -134,14 +134,14 @@ impl ReplayedTurns<'_> {
         }
     }
 
-    /// Goes forward by this many turns.
+    /// Goes forward by `count` turns, and returns the text to print.
     fn forward(&mut self, count: usize) -> Result<String, Failure> {
         let wanted = self.place.saturating_add(count);
         while self.made.len() < wanted && self.make()? {}
         self.show(wanted)
     }
 
-    /// Goes back by this many turns.
+    /// Goes back by `count` turns, and returns the text to print.
     fn back(&mut self, count: usize) -> String {
         match self.place.checked_sub(count).filter(|place| *place > 0) {
             Some(place) => {
@@ -155,7 +155,7 @@ impl ReplayedTurns<'_> {
         }
     }
 
-    /// Goes to the next turn with a transition.
+    /// Goes to the next turn with a transition, and returns the text to print.
     fn next(&mut self) -> Result<String, Failure> {
         let mut place = self.place;
         loop {
@@ -169,14 +169,14 @@ impl ReplayedTurns<'_> {
         }
     }
 
-    /// Goes to the last turn at or before this time.
+    /// Goes to the last turn at or before the time `time`, and returns the text to print.
     fn to(&mut self, time: Nanos) -> Result<String, Failure> {
         while self.made.last().is_none_or(|last| last.t <= time) && self.make()? {}
         let place = self.made.iter().take_while(|turn| turn.t <= time).count();
         self.show(place.max(1))
     }
 
-    /// Shows the turn at this position, or the last turn.
+    /// Returns the text of the turn at this position; if there is no such turn, of the last turn.
     fn show(&mut self, place: usize) -> Result<String, Failure> {
         self.place = place.min(self.made.len());
         let end = self.end.as_ref().filter(|_| place > self.made.len());
@@ -188,7 +188,7 @@ impl ReplayedTurns<'_> {
         shown.map_or_else(String::new, |turn| turn.text.clone())
     }
 
-    /// Replays the next turn; returns `false` if there is none.
+    /// Replays the next turn. Returns `false` if there is no further turn.
     fn make(&mut self) -> Result<bool, Failure> {
         if self.end.is_some() {
             return Ok(false);
@@ -217,7 +217,7 @@ impl ReplayedTurns<'_> {
     }
 }
 
-/// Reads a number of turns.
+/// Parses a number of turns.
 fn count(word: &str, argument: &str) -> Result<usize, RefusedCommand> {
     if argument.is_empty() {
         return Ok(1);
@@ -251,7 +251,7 @@ fn text(ReplayedTurn { recorded, messages, parts, laws, law, .. }: &ReplayedTurn
     text
 }
 
-/// Returns the text of a message of the record, in two parts; `None` if the message cannot be read.
+/// Returns the text of a message in the record, in two parts; `None` if the message cannot be parsed.
 fn words(message: &Message) -> Option<(String, String)> {
     let json: serde_json::Value = serde_json::from_str(&message.json).ok()?;
     let field = |name: &str| json.get(name).and_then(serde_json::Value::as_str);

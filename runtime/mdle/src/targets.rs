@@ -39,18 +39,18 @@ pub(crate) struct LinkedTarget {
     pub(crate) replay: ReplayRecord,
     /// Function that drives a route.
     pub(crate) navigate: DriveRoute,
-    /// Function that checks the options of a run, and fails with a message if the run does not accept them.
+    /// Function that checks the options of a run. It fails with a message if an option is invalid.
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
 
-/// Function that loads a plan for a target, with the safety rules of the plan's runs.
+/// Function that loads a plan for a target. The safety rules apply to all runs of the plan.
 type Load = fn(&Machine, &Input, &Arc<Target>, Option<&SafetyFile>) -> Result<Box<dyn ReadyPlan>, Failure>;
 
 /// Function that runs the plan of a machine on the outputs of a record; plans are observed if the last argument
 /// is `true`.
 type ReplayRecord = fn(Machine, &Sources, &Arc<Target>, &Begin, Record, bool) -> Result<Box<dyn RecordedRun>, Failure>;
 
-/// Function that drives a route with these modules.
+/// Function that drives a route with the modules of a library.
 type DriveRoute = fn(&Route, &Arc<Target>, Call, &Library<Sensed>) -> Result<ExitCode, Failure>;
 
 /// A plan that is ready to run.
@@ -64,13 +64,13 @@ pub(crate) trait ReadyPlan {
     /// Returns the texts of the safety rules; `None` if there are no rules.
     fn safety(&self) -> Option<&SafetyTexts>;
 
-    /// Links runs of the plan with other robots.
+    /// Sets the link of the plan's runs to other robots.
     ///
     /// # Errors
     /// Fails if the plan names a robot that the link does not contain.
     fn link(&mut self, link: Option<LinkFile>) -> Result<(), Failure>;
 
-    /// Sets the name of the path that runs of the plan replace by the way back after each `path` and `Follow`.
+    /// Sets the name of the path that runs of the plan replace with the way back after each `path` and `Follow`.
     ///
     /// # Errors
     /// Fails if the plan does not replay the path.
@@ -79,13 +79,13 @@ pub(crate) trait ReadyPlan {
     /// Sets the sound for the module `heading` in runs of the plan.
     fn hears(&mut self, hearing: Option<SoundInput>);
 
-    /// Sets the facts about the plan that a session shows.
+    /// Sets the facts about the plan, which a session shows.
     fn describe(&mut self, facts: PlanFacts);
 
-    /// Runs the plan, which is called `name`, with the modules in `library`.
+    /// Runs the plan with the modules in `library`; `name` is the name of the plan.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
 
-    /// Runs the plan, which is called `name`, in a session, with the modules in `library`.
+    /// Runs the plan in a session, with the modules in `library`; `name` is the name of the plan.
     fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: SessionInputs) -> ExitCode;
 }
 
@@ -96,7 +96,7 @@ const LINKED: [LinkedTarget; 3] = [
     LinkedTarget::new::<mdle_sim::Target, mdle_sim::alphabet::Alphabet>(),
 ];
 
-/// Returns the robot called `name`.
+/// Returns the robot with the name `name`.
 ///
 /// # Errors
 /// Fails if this program has no such robot; the message lists the known names.
@@ -146,17 +146,17 @@ impl LinkedTarget {
 /// A plan for the target `T`.
 struct PlanFor<T, A: Alphabet> {
     loaded: Arc<Loaded<A>>,
-    /// Names and texts of the plan's files, its own file first.
+    /// Names and texts of the plan's files; the plan's own file comes first.
     files: Arc<[(String, String)]>,
     facts: PlanFacts,
-    /// The target, for compiling further plans.
+    /// The target, for which further plans are compiled.
     known: Arc<Target>,
     safety: Option<Guarded<A>>,
     link: Option<LinkFile>,
     /// Sound for the module `heading`; `None` without `--ears`.
     hearing: Option<SoundInput>,
-    /// Name of the path to replace by the way back after each `path` and `Follow`, with the maximum speeds of a path;
-    /// `None` if no path is recorded.
+    /// Name of the path that is replaced with the way back after each `path` and `Follow`, and the maximum speeds of a
+    /// path; `None` if no path is recorded.
     records: Option<(&'static str, Twist)>,
     target: std::marker::PhantomData<fn() -> T>,
 }

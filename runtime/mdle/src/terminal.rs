@@ -1,4 +1,4 @@
-//! The terminal of a session: reports of the run are printed above the line that is being typed.
+//! The terminal of a session. Reports of the run are printed above the line that the user is typing.
 
 use std::io::{self, BufRead as _, BufReader, PipeReader, PipeWriter, Write as _};
 use std::sync::mpsc::{Sender, channel};
@@ -10,13 +10,13 @@ use mdle_engine::shell::{PrintAbove, TerminalLines};
 use mdle_engine::tree::Hub;
 use rustix::termios::{OptionalActions, Termios, tcgetattr, tcsetattr};
 
-/// Line that marks the end of a run's reports.
+/// Line that marks the end of the run's reports.
 const END: &[u8] = b"\0\n";
-/// Line that changes nothing on the screen. Once it has been accepted, all lines before it have been printed.
+/// Line that changes nothing on the screen. Once the terminal has accepted it, all earlier lines have been printed.
 const NOTHING: &str = "\x1b[A\n";
 /// Maximum wait for the last report to be printed.
 const LAST: Duration = Duration::from_millis(500);
-/// Interval at which to check whether the run has ended, while waiting for a report of a watched attribute.
+/// Interval at which a thread that waits for a report of a watched attribute checks whether the run has ended.
 const LOOK: Duration = Duration::from_millis(200);
 
 /// A terminal that a session uses.
@@ -24,7 +24,7 @@ const LOOK: Duration = Duration::from_millis(200);
 pub(crate) struct HeldTerminal {
     /// Settings of the terminal before the session; `None` if they could not be read.
     before: Option<Termios>,
-    /// Stream to which the run reports.
+    /// Stream to which the run writes its reports.
     reports: PipeWriter,
     printed: std::sync::mpsc::Receiver<()>,
 }
@@ -37,7 +37,7 @@ pub(crate) struct Printing {
 }
 
 impl HeldTerminal {
-    /// Takes the terminal of this process.
+    /// Takes control of the terminal of this process.
     ///
     /// # Errors
     /// Fails if the system cannot create a pipe.
@@ -48,12 +48,12 @@ impl HeldTerminal {
         Ok((Self { before, reports, printed }, Printing { reports: reader, printed: sender }))
     }
 
-    /// Returns the stream to which the run reports.
+    /// Returns the stream to which the run writes its reports.
     pub(crate) fn reports(&self) -> &PipeWriter {
         &self.reports
     }
 
-    /// Restores the terminal, once all reports of the run are printed.
+    /// Waits until all reports of the run are printed, and then restores the terminal.
     pub(crate) fn give_back(mut self) {
         let _ = self.reports.write_all(END);
         let _ = self.printed.recv_timeout(LAST);
@@ -91,7 +91,7 @@ impl Printing {
         terminal
     }
 
-    /// Prints the reports of the run, up to their end.
+    /// Prints the reports of the run until their end.
     fn print(self, print: &Mutex<Box<PrintAbove>>) {
         let (mut reports, mut line) = (BufReader::new(self.reports), Vec::new());
         while reports.read_until(b'\n', &mut line).is_ok_and(|read| read > 0) && line != END {

@@ -1,31 +1,32 @@
-//! The way back along a driven path, as a path that the law `path` replays (paper, section IV-D).
+//! Computes the way back along a driven path, as a path that the law `path` can replay (paper, section IV-D).
 
 use std::fmt::Write as _;
 
 use mdle_runtime::{Pose, Radians};
 
-/// Minimum distance between two recorded places, in metres. While the robot is closer to the last place, it counts as
-/// standing still.
+/// Minimum distance between two recorded places, in metres. While the robot is closer to the last place, it is treated
+/// as standing still.
 const APART: f64 = 0.01;
-/// Maximum number of neighbouring places on either side with which a place is averaged.
+/// Maximum number of neighbouring positions on each side that are averaged with a position.
 const SMOOTHED: usize = 2;
-/// Speed of the way back, in m/s.
+/// Speed on the way back, in m/s.
 const SPEED: f64 = 0.5;
-/// Acceleration at the start of the way back, in m/s². If the path began at full speed, the robot would drive beyond
-/// its end.
+/// Acceleration at the start of the way back, in m/s². It is limited because a robot that began at full speed would
+/// drive beyond the end of the path.
 const RAMP: f64 = 1.0;
 /// Time between two rows, in seconds.
 const ROW: f64 = 0.1;
-/// Distance along the line, in metres, from a place to each of the two places that determine its heading.
+/// Distance along the line, in metres, from a point to each of the two points that determine the heading at that point.
 ///
-/// A way by `Follow` begins with a bend towards the leader, and so the way back ends with this bend. A robot that obeys
-/// a turn late turns beyond the end of a sharp bend, and drives off in that direction. The next way then begins with a
-/// sharper bend: with 5 cm, the angle between the last heading and the way doubles with each lap of three Scouts.
+/// A path driven with `Follow` begins with a bend towards the leader, so the way back ends with that bend. A robot that
+/// reacts late to a turn overshoots a sharp bend and drives off in that direction, so the next path begins with an even
+/// sharper bend. With a distance of 5 cm, the angle between the last heading and the path doubles in each lap that
+/// three Scouts drive.
 const AHEAD: f64 = 0.2;
 /// Length, in metres, below which a path is too short to be recorded.
 const SHORTEST: f64 = 0.2;
 
-/// Coordinates of a place, in metres.
+/// Coordinates of a position, in metres.
 type Place = [f64; 2];
 
 /// The path that is being driven.
@@ -35,7 +36,7 @@ pub(crate) struct DrivenPath {
 }
 
 impl DrivenPath {
-    /// Records the pose of the robot, by odometry.
+    /// Records the pose of the robot by odometry.
     pub(crate) fn went(&mut self, here: &Pose) {
         let place = [here.x.0, here.y.0];
         if self.places.last().is_none_or(|last| distance(last, &place) >= APART) {
@@ -43,7 +44,7 @@ impl DrivenPath {
         }
     }
 
-    /// Returns the way back as the text of a path, with headings relative to `frame`; `None` for a path that is too
+    /// Returns the way back as the text of a path, whose headings are relative to `frame`; `None` if the path is too
     /// short.
     pub(crate) fn back(&self, frame: Radians) -> Option<String> {
         let reversed: Vec<Place> = self.places.iter().rev().copied().collect();
@@ -56,8 +57,8 @@ fn distance(one: &Place, other: &Place) -> f64 {
     libm::hypot(one[0] - other[0], one[1] - other[1])
 }
 
-/// Returns each place as the mean of the places around it. The same number of places is used on either side, so that
-/// the ends do not move.
+/// Returns each position as the mean of the positions around it. On both sides, the same number of positions is used,
+/// so that the ends do not move.
 fn smoothed(places: &[Place]) -> Vec<Place> {
     let mean = |number: usize| {
         let beside = SMOOTHED.min(number).min(places.len() - 1 - number);
@@ -67,10 +68,10 @@ fn smoothed(places: &[Place]) -> Vec<Place> {
     (0..places.len()).map(mean).collect()
 }
 
-/// A line through places, parameterized by the length along it.
+/// A line through positions, parameterized by the length along the line.
 struct StraightLine {
     places: Vec<Place>,
-    /// Length from the start of the line to each place, in metres.
+    /// Length from the start of the line to each position, in metres.
     lengths: Vec<f64>,
 }
 
@@ -90,7 +91,7 @@ impl StraightLine {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// Returns the place at this length along the line; the nearer end of the line if the length is beyond it.
+    /// Returns the position at this length along the line. If the length is outside the line, returns the nearer end.
     fn at(&self, length: f64) -> Place {
         let next = self.lengths.partition_point(|other| *other <= length).clamp(1, self.places.len().max(2) - 1);
         let place = |number: usize| self.places.get(number).copied().unwrap_or_default();
@@ -107,7 +108,7 @@ impl StraightLine {
     }
 }
 
-/// Writes the rows of a path along a line, which begins at rest and ends at full speed.
+/// Returns the rows of a path along a line. The path begins at rest and ends at full speed.
 fn rows(line: &StraightLine, frame: Radians) -> String {
     let (ramp, length) = (SPEED / RAMP, line.length());
     let on_ramp = RAMP * ramp * ramp / 2.0;

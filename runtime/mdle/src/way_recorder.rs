@@ -1,5 +1,5 @@
-//! The recorder of a robot: replaces a path of the plan by the way back along the path driven under `path` and
-//! `Follow`.
+//! The recorder of a robot. It replaces a path of the plan with the way back along the path that the robot has driven
+//! under `path` and `Follow`.
 
 use mdle_engine::Recorder;
 use mdle_host::setpoints;
@@ -7,24 +7,25 @@ use mdle_runtime::{Frame, PathStore, Pose, Sensed, StoredPath, Twist};
 
 use crate::way_back::DrivenPath;
 
-/// Maximum number of setpoints of all paths that a robot records; they are kept until the program ends.
+/// Maximum number of setpoints in all paths that a robot records. The limit is needed because setpoints stay in memory
+/// until the program ends.
 const SETPOINTS: usize = 2_000_000;
 
 /// The recorder of a robot.
 pub(crate) struct WayRecorder {
     /// Name of the path that the recorder replaces.
     path: &'static str,
-    /// Maximum speeds of a path.
+    /// Maximum speeds of a replayed path.
     fastest: Twist,
-    /// The path driven under the current law; `None` if this law is not recorded.
+    /// The path that the robot has driven under the current law; `None` if this law is not recorded.
     way: Option<DrivenPath>,
     /// Frame of the plan; `None` before the first turn.
     frame: Option<Frame>,
-    /// The robot's paths after the first recording; `None` before.
+    /// The robot's paths after the first recording; `None` before the first recording.
     store: Option<PathStore>,
-    /// The newly recorded path, until [`Recorder::take_replaced`] takes it.
+    /// The newly recorded path; `None` once [`Recorder::take_replaced`] has taken it.
     replaced: Option<StoredPath>,
-    /// Number of setpoints that were recorded.
+    /// Number of setpoints that have been recorded so far.
     recorded: usize,
 }
 
@@ -34,14 +35,14 @@ pub(crate) struct WayTurn<'t> {
     pub(crate) here: &'t Pose,
     /// The robot's paths.
     pub(crate) paths: PathStore,
-    /// Text of the law that runs after the turn; `None` if no law does.
+    /// Text of the law that runs after the turn; `None` if no law runs.
     pub(crate) law: Option<&'t str>,
     /// `true` if the plan made transitions.
     pub(crate) has_changed: bool,
 }
 
 impl WayRecorder {
-    /// Returns a recorder that replaces the path `path`, on a robot with the maximum speeds `fastest`.
+    /// Creates a recorder that replaces the path `path`, on a robot with the maximum speeds `fastest`.
     pub(crate) fn new(path: &'static str, fastest: Twist) -> Self {
         Self { path, fastest, way: None, frame: None, store: None, replaced: None, recorded: 0 }
     }
@@ -56,7 +57,8 @@ impl WayRecorder {
         self.store
     }
 
-    /// Takes a turn. If a recorded law has ended, replaces the path by the way back and returns its text.
+    /// Processes a turn. If a recorded law has ended, replaces the path with the way back, and returns the text of the
+    /// way back.
     ///
     /// # Errors
     /// Fails with a message if the way back is not a valid path.
@@ -76,7 +78,7 @@ impl WayRecorder {
         Ok(Some(text))
     }
 
-    /// Replaces the path by the path of this text.
+    /// Replaces the path with the path in `text`.
     fn replace(&mut self, paths: PathStore, text: &str) -> Result<(), String> {
         let setpoints = setpoints(self.path, text.as_bytes(), self.fastest)?;
         self.recorded = self.recorded.saturating_add(setpoints.len());

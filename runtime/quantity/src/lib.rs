@@ -1,5 +1,6 @@
-//! Reads and formats quantities for people: the values of options, which are a number with a unit as in a plan or a
-//! number alone, and measured values in the words of a plan. Also suggests similar names for unknown ones.
+//! Reads and formats quantities for people. Reads the values of options, which are a number alone or a number with a
+//! unit as in a plan. Formats measured values in the words of a plan. Also suggests known names that are similar to an
+//! unknown name.
 
 mod measured;
 mod near;
@@ -11,7 +12,7 @@ pub use measured::{cause_text, file_line, operand_words};
 pub use near::{did_you_mean, nearest};
 pub use rounded::{Clocked, rounded};
 
-/// A kind of quantity that options take.
+/// A kind of quantity that an option can have as its value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// A time, in seconds.
@@ -52,7 +53,7 @@ impl Quantity {
     /// the unit of the variant.
     ///
     /// # Errors
-    /// Fails if the text is not a number with a unit of this kind; the message says what to type instead.
+    /// Fails if the text is not a number with a unit of this kind; the message contains the correction.
     pub fn read(self, text: &str, bare: &str) -> Result<f64, String> {
         let is_unit = |letter: char| !letter.is_ascii() || letter.is_ascii_alphabetic() && !matches!(letter, 'e' | 'E');
         let (digits, unit) = text.split_at(text.find(is_unit).unwrap_or(text.len()));
@@ -67,7 +68,7 @@ impl Quantity {
     /// Reads a time as [`Quantity::read`] does.
     ///
     /// # Errors
-    /// Fails if the text is not a time from `least` to `most`; the message says what to type instead.
+    /// Fails if the text is not a time from `least` to `most`; the message contains the correction.
     pub fn duration(text: &str, bare: &str, least: Duration, most: Duration) -> Result<Duration, String> {
         let read = Duration::try_from_secs_f64(Self::Time.read(text, bare)?).ok();
         read.filter(|duration| (least..=most).contains(duration))
@@ -103,7 +104,7 @@ impl Quantity {
         }
     }
 
-    /// Returns the name of the quantity with its article.
+    /// Returns the name of the quantity with its article, such as "a time".
     fn words(self) -> &'static str {
         match self {
             Self::Time => "a time",

@@ -8,9 +8,10 @@ use mdle_runtime::{Cause, Measured, OperandWords, Operator, SourceLine, Transiti
 
 use crate::rounded;
 
-/// Number of decimals of a value, unless more are needed to distinguish it from the value with which it is compared.
+/// Number of decimal places of a value, unless more are needed to distinguish the value from that with which it is
+/// compared.
 const DECIMALS: usize = 2;
-/// Maximum number of decimals of a value.
+/// Maximum number of decimal places of a value.
 const DECIMALS_MOST: usize = 9;
 
 /// Returns the text of a transition's cause, with the values of the operands that have fired: `r1 = 0.38 m < 40cm
@@ -73,8 +74,8 @@ pub fn operand_words(operand: &OperandWords<'_>, measured: Measured, holds: bool
     words + operand.written.get(written..).unwrap_or("")
 }
 
-/// Returns the values of both sides in the units of their signals, with the fewest decimals for which the comparison
-/// still has the same result.
+/// Returns the values of both sides in the units of their signals, with the smallest number of decimal places for which
+/// the comparison still has the same result.
 fn compared(words: &[ValueWords<'_>], left: f64, operator: Operator, right: f64) -> [Option<String>; 2] {
     let scale = |side: usize| words.get(side).map(|words| words.scale);
     let Some(one) = scale(0) else { return [None, None] };
@@ -89,7 +90,7 @@ fn compared(words: &[ValueWords<'_>], left: f64, operator: Operator, right: f64)
     [Some(text(left, one, decimals)), scale(1).map(|scale| text(right, scale, decimals))]
 }
 
-/// Formats a number with at most `decimals` decimals and no trailing zeros.
+/// Formats a number with at most `decimals` decimal places and no trailing zeros.
 fn shown(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };

@@ -1,6 +1,6 @@
 //! Names that are similar to an unknown name, for messages.
 
-/// Returns the name in `names` that is most similar to `name`, if it is similar enough to be meant.
+/// Returns the name in `names` that is most similar to `name`, if it is so similar that the user probably meant it.
 #[must_use]
 pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let lower = name.to_lowercase();
@@ -10,7 +10,8 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&
     names.map(|other| (distance(other), other)).filter(|(found, _)| *found <= allowed).min().map(|(_, other)| other)
 }
 
-/// Returns the end of a sentence about an unknown name: the similar name in `known`, or an empty text.
+/// Returns the end of a sentence about an unknown name. It suggests the similar name in `known`, or is empty if there
+/// is none.
 #[must_use]
 pub fn did_you_mean(name: &str, known: &[&str]) -> String {
     let near = nearest(name, known.iter().copied());

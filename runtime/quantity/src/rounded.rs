@@ -4,7 +4,8 @@ use std::fmt;
 
 use mdle_runtime::Nanos;
 
-/// Formats nanoseconds as seconds, or nanometres as metres, rounded to the thousandth and with at least one decimal.
+/// Formats nanoseconds as seconds, or nanometres as metres, rounded to a thousandth and with at least one decimal
+/// place.
 #[must_use]
 pub fn rounded(nanos: u64) -> String {
     let thousandths = nanos / 1_000_000 + u64::from(nanos % 1_000_000 >= 500_000);

@@ -1,11 +1,12 @@
-//! The beginning of a record: the run, its plan, and the constants of the robot's outputs.
+//! Writes and reads the beginning of a record: the data of the run and of its plan, and the constant parts of the
+//! robot's outputs.
 
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, PathStore, Radians, Sensed, Setpoint, Shape, StoredPath};
 
 use crate::bytes::{ByteReader, put_f64, put_text, put_u32, put_u64};
 
-/// Data of a run that do not change.
+/// Data of a run that do not change while it runs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Begin {
     /// Version of the program that drove the robot.
@@ -14,17 +15,17 @@ pub struct Begin {
     pub target: String,
     /// Name of the plan.
     pub plan: String,
-    /// Shell command that repeats the run, without the options that ask for its log.
+    /// Shell command that repeats the run, without the options for writing a log.
     pub command: String,
     /// Period of a turn.
     pub period: Nanos,
     /// Name and text of each file of the plan, the plan's own file first. Empty for an executable, which does not
     /// contain the text of its plan.
     pub files: Vec<(String, String)>,
-    /// Description of what influences the inputs besides the plan and the outputs, such as safety rules; empty if
-    /// nothing does.
+    /// Description of everything that influences the inputs in addition to the plan and the outputs, such as safety
+    /// rules; empty if nothing else does.
     pub beside: String,
-    /// Texts of the run's safety rules, if there are any.
+    /// Texts of the run's safety rules, `None` if there are none.
     pub safety: Option<SafetyTexts>,
 }
 
@@ -35,25 +36,26 @@ pub struct SafetyTexts {
     pub name: String,
     /// Text of the safety file.
     pub text: String,
-    /// Files of the plans to which rules divert, in the order of the rules; for each plan its own file first.
+    /// Files of the plans to which rules divert the run, in the order of the rules. For each plan, its own file is
+    /// first.
     pub plans: Vec<Vec<(String, String)>>,
 }
 
 /// Parts of a robot's outputs that never change in a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constants {
-    /// Constants of the body.
+    /// Constant measures of the body.
     pub shape: Shape,
     /// Paths that the plan can replay.
     pub paths: PathStore,
 }
 
 impl Begin {
-    /// Value of [`Begin::beside`] in a record that begins in the middle of a run, whose turns therefore cannot be
+    /// Value of [`Begin::beside`] in a record that begins in the middle of a run. The turns of such a record cannot be
     /// replayed.
     pub const MIDDLE: &str = "the run before it";
 
-    /// Writes the beginning of a run whose first output is `y`, with the paths that the plan can replay.
+    /// Writes the beginning of a run whose first output is `y`, including the paths that the plan can replay.
     pub(crate) fn put(&self, y: &Sensed, to: &mut Vec<u8>) {
         for text in [&self.version, &self.target, &self.plan, &self.command, &self.beside] {
             put_text(to, text);
@@ -75,8 +77,8 @@ impl Begin {
         }
     }
 
-    /// Reads the beginning of a run. Its paths stay in memory until the program ends, like the paths that a plan
-    /// replays.
+    /// Reads the beginning of a run. Its paths stay in memory until the program ends, as the paths that a plan replays
+    /// do in a run.
     pub(crate) fn take(from: &mut ByteReader<'_>) -> Option<(Self, Constants)> {
         let [version, target, plan, command, beside] =
             [from.text()?, from.text()?, from.text()?, from.text()?, from.text()?];

@@ -26,14 +26,15 @@ pub(crate) fn put_pose(to: &mut Vec<u8>, pose: &Pose) {
     }
 }
 
-/// Writes a text of less than 4 GiB; a longer text is written as an empty text.
+/// Writes a text that is shorter than 4 GiB; a longer text is written as an empty text.
 pub(crate) fn put_text(to: &mut Vec<u8>, text: &str) {
     let (length, text) = u32::try_from(text.len()).map_or((0, ""), |length| (length, text));
     put_u32(to, length);
     to.extend_from_slice(text.as_bytes());
 }
 
-/// Bytes to read: each function reads a value from their start, or returns `None` if there are too few bytes.
+/// Bytes to read. Each function reads a value from the start of the remaining bytes, or returns `None` if there are too
+/// few bytes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ByteReader<'b>(pub(crate) &'b [u8]);
 

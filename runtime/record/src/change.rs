@@ -1,6 +1,6 @@
-//! Writes and reads the changes that influence a turn, besides the robot's output: values that modules have published,
-//! states of other robots, paths that were recorded, and changes that users and the engine made at the break before the
-//! turn.
+//! Writes and reads the changes that influence a turn, in addition to the robot's output. These are values that modules
+//! have published, states of other robots, paths that were recorded, and changes that users and the engine have made
+//! between the previous turn and this one.
 
 use mdle_runtime::{Nanos, PeerState, Setpoint, Twist};
 
@@ -8,10 +8,11 @@ use crate::begin::{count, put_files, put_path, take_files, take_path};
 use crate::bytes::{ByteReader, put_f64, put_pose, put_text, put_u32, put_u64};
 use crate::exact::{put_twist, take_twist};
 
-/// A change that influences a turn, besides the robot's output.
+/// A change that influences a turn, in addition to the robot's output.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RecordedChange {
-    /// A module has an attribute from now on. Later changes refer to attributes by number, counted from 0 in a record.
+    /// A module has this attribute from now on. Later changes refer to an attribute by its number: the attributes of a
+    /// record are counted from 0.
     Attribute {
         /// Name of the module.
         module: String,
@@ -22,17 +23,17 @@ pub enum RecordedChange {
     },
     /// The attribute with this number no longer exists.
     Vanished(u32),
-    /// A module has published a value at a turn break.
+    /// A module has published a value between two turns.
     Published {
         /// Number of the attribute.
         attribute: u32,
-        /// Time of the turn before the break.
+        /// Time of the earlier of these turns.
         at: Nanos,
         /// The value as 64 bits; 0 for a kind that plans do not read.
         bits: u64,
     },
-    /// Files of a plan, each with its name and text, the plan's own file first. Later changes refer to these lists by
-    /// number, counted from 0 in a record.
+    /// Files of a plan, each with its name and text, the plan's own file first. Later changes refer to a list of files
+    /// by its number: the lists of a record are counted from 0.
     Files(Vec<(String, String)>),
     /// A plan is ready to replace the current plan.
     Armed {
@@ -43,9 +44,9 @@ pub enum RecordedChange {
         /// Number of the kind of event at which the plan replaces the current plan.
         when: u8,
     },
-    /// The armed plan is cancelled.
+    /// The plan that was ready to replace the current plan is cancelled.
     Cancelled,
-    /// The trial of a plan has ended, and the plan is replaced, for this reason.
+    /// The trial of a plan has failed for this reason, so the plan is replaced by the previous one.
     RolledBack(String),
     /// From now on, each plan that replaces another plan is on trial for this duration.
     Trial(Nanos),
@@ -56,24 +57,24 @@ pub enum RecordedChange {
         /// Value of the limit, in SI units.
         value: f64,
     },
-    /// The safety rules were reset: limits have the values of the safety file, and all rules apply again.
+    /// The safety rules were reset: the limits have the values of the safety file again, and all rules apply again.
     SafetyReset,
-    /// The plan made no turn because no thread was ready for it in time.
+    /// The plan made no turn, because no thread was ready in time to run it.
     Skipped,
     /// The plan did not finish its turn in time.
     Late,
     /// A late turn of the plan has ended; its input is not used.
     Back,
-    /// Another robot that the plan names, as the state link knows it in this turn.
+    /// Another robot that the plan names, with the data that the state link has about it in this turn.
     Peer {
         /// Name of the robot.
         name: String,
-        /// Number of times that the receiver had entered a scope with a `rendezvous` with this robot.
+        /// Number of times that the robot of the record had entered a scope with a `rendezvous` with this other robot.
         rounds: u64,
         /// The newest state that has arrived; `None` before the first arrival.
         state: Option<PeerState>,
     },
-    /// The path back along a driven path was recorded: from now on it replaces the path of this name.
+    /// The way back along a driven path was recorded. From now on, it replaces the path with this name.
     Path {
         /// Name of the path.
         name: String,
@@ -207,7 +208,7 @@ fn take(from: &mut ByteReader<'_>) -> Option<RecordedChange> {
     })
 }
 
-/// Writes the input that a safety rule changed, or that there is none.
+/// Writes the input that a safety rule changed; for `None`, writes that no rule changed an input.
 pub(crate) fn put_overruled(overruled: Option<&Overruled>, to: &mut Vec<u8>) {
     to.push(u8::from(overruled.is_some()));
     if let Some(Overruled { asked, rule }) = overruled {

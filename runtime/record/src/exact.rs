@@ -1,4 +1,5 @@
-//! Writes and reads an output bit for bit: the pings that are newer than the previous output, and all other numbers.
+//! Writes and reads an output, bit for bit. Of the pings, only those that are newer than the previous output are
+//! written.
 
 use mdle_runtime::{
     Compass, Meters, MetersPerSecond, Mount, Nanos, Ping, Pings, Pose, Published, RadiansPerSecond, SONARS, Sensed,
@@ -8,11 +9,11 @@ use mdle_runtime::{
 use crate::Constants;
 use crate::bytes::{ByteReader, put_f32, put_f64, put_pose, put_u32, put_u64};
 
-/// Tag of a compass that can be computed from the output and the previous compass.
+/// Tag for a compass that can be computed from the output and the previous compass.
 const COMPUTED: u8 = 0;
-/// Tag of a compass without measurements.
+/// Tag for a compass without measurements.
 const UNUSED: u8 = 1;
-/// Tag of any other compass.
+/// Tag for any other compass.
 const UNKNOWN: u8 = 2;
 
 /// Writes an output, without the pings that the previous output `before` contains.
@@ -63,7 +64,7 @@ fn computed(y: &Sensed, before: Option<&Sensed>) -> Compass {
     compass
 }
 
-/// Returns the number of pings that are newer than all pings of the previous output. Pings are compared to the bit,
+/// Returns the number of pings that are newer than all pings of the previous output. Pings are compared bit by bit,
 /// because a range may be a NaN.
 fn fresh(pings: Option<&Pings>, before: Option<&Pings>) -> usize {
     let bits = |pose: &Pose| [pose.x.0, pose.y.0, pose.theta.0].map(f64::to_bits);
@@ -73,7 +74,7 @@ fn fresh(pings: Option<&Pings>, before: Option<&Pings>) -> usize {
     pings.map_or(0, |pings| pings.newest_first().take_while(|ping| Some(all(ping)) != newest).count())
 }
 
-/// Returns the mount of a sonar's newest ping; the next ping seldom has another mount.
+/// Returns the mount of a sonar's newest ping; the next ping usually has the same mount.
 fn last_mount(pings: Option<&Pings>) -> Mount {
     pings.and_then(|pings| pings.newest_first().next()).map_or(Mount::default(), |ping| ping.mount)
 }
@@ -101,8 +102,8 @@ fn put_ping(ping: &Ping, y: &Sensed, mount: Mount, to: &mut Vec<u8>) {
     }
 }
 
-/// Reads an output that was written with the previous output `before`. Returns `None` if the bytes are not an output,
-/// or if the recorded drift of the heading does not follow from the pings.
+/// Reads an output that follows the output `before`. Returns `None` if the bytes are not an output, or if the recorded
+/// drift of the heading does not follow from the pings.
 pub(crate) fn take(from: &mut ByteReader<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<Sensed> {
     let mut y = Sensed {
         at: from.nanos()?,

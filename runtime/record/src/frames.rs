@@ -10,7 +10,7 @@ use crate::{Begin, Chain, RecordedTransition, RecordedTurn};
 /// Length of a frame's header, in bytes.
 const HEAD: usize = 5;
 
-/// Kind of a frame.
+/// Tag that gives the kind of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Tag {
     Begin,
@@ -28,7 +28,7 @@ impl Tag {
     }
 }
 
-/// Encoder of the turns of a run as frames.
+/// Encodes the turns of a run as frames.
 #[derive(Debug, Clone, Default)]
 pub struct Frames {
     before: Option<Sensed>,
@@ -76,7 +76,7 @@ impl Frames {
         self.put(Tag::End, to);
     }
 
-    /// Appends the checksum of the content and all earlier contents.
+    /// Appends the checksum over the content of this frame and of all earlier frames.
     fn chained(&mut self) {
         self.chain = self.chain.with(&self.content);
         self.content.extend_from_slice(&self.chain.bytes());
@@ -105,7 +105,7 @@ pub(crate) fn first(bytes: &[u8]) -> Option<(Tag, &[u8], usize)> {
     Some((tag, from.take(length)?, HEAD + length))
 }
 
-/// Decoder of the turns of a record.
+/// Decodes the turns of a record.
 #[derive(Debug)]
 pub(crate) struct TurnDecoder {
     pub(crate) begin: Begin,

@@ -1,8 +1,8 @@
-//! Records of runs: an MCAP file with all data for a bit-exact replay, and with channels that viewers can open
-//! (docs/src/reference/interfaces.md, 6.6).
+//! Writes and reads the records of runs. A record is an MCAP file that contains all data for a replay that is exact to
+//! the bit, and channels that viewers can open (docs/src/reference/interfaces.md, 6.6).
 //!
-//! The thread that drives a robot encodes each turn as a [frame](frames). The thread that writes the file turns frames
-//! into an MCAP file, a [`RecordFile`]. [`Records`] reads the turns of such a file.
+//! The thread that drives a robot encodes each turn as a [frame](frames). The thread that writes the file converts
+//! frames to an MCAP file, using a [`RecordFile`]. [`Records`] reads the turns of such a file.
 #![forbid(unsafe_code)]
 
 mod begin;

@@ -6,7 +6,7 @@ use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{MAGIC, McapError};
 
-/// Maximum size of a part of the file, in bytes: more than the data of a robot in one second.
+/// Maximum size of a part of the file, in bytes: which is more than the data of a robot in one second.
 const LARGEST: usize = 64_000_000;
 /// Maximum number of bytes that are read at a time, so that a corrupted length does not allocate more memory.
 const STEP: usize = 1 << 18;
@@ -29,20 +29,20 @@ pub(crate) enum Unreadable {
     Damaged(String),
 }
 
-/// Number of consecutive parts of nine zeros at which the file counts as ended: more than a megabyte of zeros, which no
-/// chunk of a record contains.
+/// Number of consecutive parts of nine zeros at which the file is treated as ended: more than a megabyte of zeros,
+/// which no chunk of a record contains.
 const MOST_ZEROS: u32 = 120_000;
 
-/// Reader of the parts of an MCAP file.
+/// Reads the parts of an MCAP file.
 pub(crate) struct PartReader<R> {
     source: R,
     reader: LinearReader,
     chunk: Option<Chunk>,
-    /// Last bytes that were read, which show whether the file has its end.
+    /// The last bytes that were read; they show whether the end of the file is present.
     last: [u8; MAGIC.len()],
     /// Number of consecutive parts that consist of zeros.
     zeros: u32,
-    /// `true` once the end of the file has been read: the file was not cut short.
+    /// `true` if the end of the file has been read, so that the file was not cut short.
     pub(crate) is_whole: bool,
 }
 
@@ -52,7 +52,7 @@ struct Chunk {
     data: Vec<u8>,
     /// Byte offset of the next part in the chunk.
     at: usize,
-    /// `true` if the chunk's bytes have the recorded checksum.
+    /// `true` if the checksum of the chunk's bytes equals the recorded checksum.
     is_sound: bool,
 }
 
@@ -124,7 +124,7 @@ impl Chunk {
     const HEAD: [usize; 2] = [32, 8];
 
     /// Reads an uncompressed chunk. A chunk whose length differs from the length in its header is refused, because the
-    /// library would panic on a shorter one.
+    /// library would panic on a chunk that is too short.
     fn of(data: &[u8]) -> Result<Self, Unreadable> {
         let shorter = || Unreadable::Damaged("one of its seconds has another length than it gives".to_owned());
         let [before, after] = Self::HEAD;
@@ -148,8 +148,8 @@ impl Chunk {
         }
     }
 
-    /// Returns the next channel or message. Damage of the chunk is reported at its end, so that the message can name
-    /// the changed turn.
+    /// Returns the next channel or message. Damage to the chunk is reported only at its end, so that the message can
+    /// name the changed turn.
     fn next(&mut self) -> Result<Option<FilePart>, Unreadable> {
         const HEAD: usize = 9;
         let changed = || {

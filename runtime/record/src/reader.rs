@@ -1,4 +1,4 @@
-//! Reads the turns of a record one at a time, so that memory use does not depend on the record's length.
+//! Reads the turns of a record one at a time, so that the memory needed does not depend on the record's length.
 
 use std::fmt;
 use std::io::{self, Read};
@@ -20,11 +20,11 @@ pub enum ReadError {
     /// The record has another version of this format: the first text is the encoding of its messages, the second the
     /// encoding that can be read.
     OtherVersion(String, &'static str),
-    /// Bytes of the record's beginning were changed after they had been written.
+    /// Bytes in the beginning of the record were changed after they had been written.
     ChangedBegin,
     /// Bytes of the turn with this number were changed after they had been written.
     Changed(u64),
-    /// The file is damaged after this number of turns, as the sentence explains.
+    /// The file is damaged after this number of turns; the sentence explains the damage.
     Damaged(u64, String),
 }
 
@@ -67,19 +67,19 @@ pub enum MessageKind {
 /// Turns of a record, each with the messages that follow it in the record.
 pub struct TurnsWithMessages<R> {
     records: Records<R>,
-    /// The next turn, read in advance; `None` before the first turn was returned, and at the end.
+    /// The next turn, read in advance; `None` before the first turn has been returned, and at the end of the record.
     peeked: Option<Result<RecordedTurn, ReadError>>,
 }
 
 impl<R: Read> TurnsWithMessages<R> {
-    /// Returns `true` once the end of the record has been read. A run that was killed leaves a record without an end.
+    /// Returns `true` if the end of the record has been read. A run that was killed leaves a record without an end.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.records.is_whole()
     }
 
-    /// Returns the time of the next turn; `None` before the first turn was returned, at the end of the record, and if
-    /// the rest cannot be read.
+    /// Returns the time of the next turn; `None` before the first turn has been returned, at the end of the record, and
+    /// if the rest of the record cannot be read.
     #[must_use]
     pub fn next_time(&self) -> Option<Nanos> {
         self.peeked.as_ref().and_then(|next| next.as_ref().ok()).map(|next| next.t)
@@ -102,9 +102,9 @@ impl<R: Read> Iterator for TurnsWithMessages<R> {
 /// Turns of a record.
 pub struct Records<R> {
     parts: PartReader<R>,
-    /// Channels of `/exact/begin`, `/exact/turn`, `/plan/transitions` and `/engine/events`.
+    /// Numbers of the channels `/exact/begin`, `/exact/turn`, `/plan/transitions` and `/engine/events`.
     channels: [Option<u16>; 4],
-    /// Messages that were read since the last turn.
+    /// Messages that have been read since the last turn.
     messages: Vec<Message>,
     turns: Option<TurnDecoder>,
     count: u64,
@@ -133,7 +133,7 @@ impl<R: Read> Records<R> {
         }
     }
 
-    /// Returns `true` once the end of the record has been read. A run that was killed leaves a record without an end.
+    /// Returns `true` if the end of the record has been read. A run that was killed leaves a record without an end.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.parts.is_whole
@@ -144,8 +144,8 @@ impl<R: Read> Records<R> {
         TurnsWithMessages { records: self, peeked: None }
     }
 
-    /// Returns the next message of `/exact/begin`, with the number 0, or of `/exact/turn`, with the number 1; `None` at
-    /// the end of the record.
+    /// Returns the next message of the channels `/exact/begin` and `/exact/turn`, and a number that is 0 for the first
+    /// of them and 1 for the second. Returns `None` at the end of the record.
     fn message(&mut self) -> Result<Option<(usize, Vec<u8>)>, ReadError> {
         let unreadable = |why| match why {
             Unreadable::System(error) => ReadError::System(error),

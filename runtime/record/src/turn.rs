@@ -1,4 +1,4 @@
-//! A turn of a record: the output, the input that was sent, the transitions and the plan's state.
+//! Writes and reads a turn of a record: the output, the input that was sent, the transitions and the plan's state.
 
 use mdle_runtime::{Cause, Nanos, Sensed, Transition, Twist};
 
@@ -10,7 +10,7 @@ use crate::{Constants, Overruled, RecordedChange};
 /// A turn of a current run, without its output.
 #[derive(Debug, Clone, Copy)]
 pub struct TurnMade<'a> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
     /// Time of the turn in the run.
     pub t: Nanos,
@@ -18,13 +18,13 @@ pub struct TurnMade<'a> {
     pub sent: Twist,
     /// Source of the input.
     pub applied: Applied,
-    /// Number of the plan that ran, from 1.
+    /// Number of the plan that ran, counting from 1.
     pub plan: u64,
-    /// State of the plan at the end of the turn; 0 if no plan was active.
+    /// State of the plan at the end of the turn; 0 if no plan ran.
     pub state: u64,
-    /// Changes that influence the turn, besides its output.
+    /// Changes that influence the turn, in addition to its output.
     pub changes: &'a [RecordedChange],
-    /// Input that a safety rule changed.
+    /// Input that a safety rule changed; `None` if no rule changed it.
     pub overruled: Option<&'a Overruled>,
 }
 
@@ -40,7 +40,7 @@ pub(crate) enum Undecoded {
 /// A turn of a recorded run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RecordedTurn {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
     /// Time of the turn in the run.
     pub t: Nanos,
@@ -50,15 +50,15 @@ pub struct RecordedTurn {
     pub sent: Twist,
     /// Source of the input.
     pub applied: Applied,
-    /// Number of the plan that ran, from 1.
+    /// Number of the plan that ran, counting from 1.
     pub plan: u64,
-    /// State of the plan at the end of the turn; 0 if no plan was active.
+    /// State of the plan at the end of the turn; 0 if no plan ran.
     pub state: u64,
     /// Transitions of the turn, in order.
     pub steps: Vec<RecordedTransition>,
-    /// Changes that influenced the turn, besides its output, in order.
+    /// Changes that influenced the turn, in addition to its output, in order.
     pub changes: Vec<RecordedChange>,
-    /// Input that a safety rule changed.
+    /// Input that a safety rule changed; `None` if no rule changed it.
     pub overruled: Option<Overruled>,
 }
 
@@ -89,7 +89,7 @@ pub struct RecordedTransition {
 }
 
 impl RecordedTransition {
-    /// Returns the recorded form of a transition.
+    /// Creates the recorded form of a transition.
     #[must_use]
     pub fn new(transition: &Transition, operands: impl IntoIterator<Item = u32>) -> Self {
         let Transition { from, scope, cause, to, .. } = *transition;
@@ -130,7 +130,7 @@ pub(crate) fn put(
     }
 }
 
-/// Reads a turn that was written with the previous output `before`; returns `None` if the bytes are malformed.
+/// Reads a turn that follows the output `before`; returns `None` if the bytes are malformed.
 pub(crate) fn take(from: &mut ByteReader<'_>, before: Option<&Sensed>, constants: &Constants) -> Option<RecordedTurn> {
     let (number, t) = (from.u64()?, from.nanos()?);
     let y = exact::take(from, before, constants)?;
@@ -152,7 +152,7 @@ pub(crate) fn take(from: &mut ByteReader<'_>, before: Option<&Sensed>, constants
     Some(RecordedTurn { number, t, y, sent, applied, plan, state, steps, changes, overruled })
 }
 
-/// Checksum of the beginning and all turns so far, with which a reader finds the first changed turn.
+/// Checksum over the beginning and all turns so far. With it, a reader finds the first turn that was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Chain(u32);
 
@@ -160,7 +160,7 @@ impl Chain {
     /// Number of bytes of a checksum.
     const LENGTH: usize = 4;
 
-    /// Returns the checksum that also covers `bytes`, the content of the next turn.
+    /// Returns the checksum that also covers the content `bytes` of the next turn.
     pub(crate) fn with(self, bytes: &[u8]) -> Self {
         let mut sum = crc32fast::Hasher::new();
         sum.update(&self.0.to_le_bytes());

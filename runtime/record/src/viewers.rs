@@ -1,4 +1,4 @@
-//! Channels for viewers: JSON messages with schemas that Foxglove, Lichtblick and PlotJuggler support.
+//! Writes the channels for viewers: JSON messages with schemas that Foxglove, Lichtblick and PlotJuggler support.
 
 use std::fmt::{self, Write as _};
 
@@ -51,7 +51,7 @@ fn time(t: Nanos) -> String {
     format!("{{\"sec\":{},\"nsec\":{}}}", t.0 / 1_000_000_000, t.0 % 1_000_000_000)
 }
 
-/// Rounds a number to three decimals: a picture needs no more than millimetres.
+/// Rounds a number to three decimal places, because a picture shows no more than millimetres.
 fn short(value: f64) -> Number {
     // Adding zero turns -0 into 0.
     Number(libm::round(value * 1e3) / 1e3 + 0.0)
@@ -76,8 +76,8 @@ fn pose(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
     write!(to, "{}}}", begin(turn))
 }
 
-/// Writes the last range of each sonar from the robot's centre, in metres, counter-clockwise from the front; 0 if no
-/// echo returned. Viewers draw the ranges at the robot's pose.
+/// Writes the last range of each sonar, measured from the robot's centre, in metres, counter-clockwise from the front;
+/// 0 if no echo returned. Viewers draw the ranges at the robot's pose.
 fn ranges(turn: &RecordedTurn, to: &mut String) -> fmt::Result {
     let last = libm::round(core::f64::consts::TAU * (SONARS - 1) as f64 / SONARS as f64 * 1e6) / 1e6;
     write!(to, "{},\"start_angle\":0,\"end_angle\":{last},\"ranges\":[", begin(turn))?;

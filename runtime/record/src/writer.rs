@@ -1,4 +1,4 @@
-//! Writes the file of a record: converts frames to an MCAP file.
+//! Writes the file of a record, by converting frames to an MCAP file.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -21,8 +21,8 @@ pub(crate) const BEGIN: &str = "mdle.begin.2";
 /// Encoding of the messages of `/exact/turn`.
 pub(crate) const TURN: &str = "mdle.turn.2";
 
-/// Writer of a record from frames. Each second of the run becomes a chunk, which is written as a whole: a record that
-/// is cut short can be read up to its last second.
+/// Writes a record from frames. Each second of the run becomes a chunk, which is written as a whole. A record that is
+/// cut short can therefore be read up to its last complete second.
 pub struct RecordFile<W: Write> {
     /// Bytes of an incomplete frame.
     pending: Vec<u8>,
@@ -31,7 +31,7 @@ pub struct RecordFile<W: Write> {
 
 /// State of a record that is being written.
 enum WriterState<W: Write> {
-    /// The beginning has not been written yet.
+    /// The beginning of the record has not been written yet.
     Unbegun(Option<W>),
     Begun(Box<OpenRecord<W>>),
     /// The record is complete, or could not be written.
@@ -43,7 +43,7 @@ struct OpenRecord<W: Write> {
     writer: Writer<NoSeek<W>>,
     turns: TurnDecoder,
     channels: Channels,
-    /// Number of messages so far.
+    /// Number of messages written so far.
     sequence: u32,
     /// Time at which the current chunk began.
     chunk: Nanos,
@@ -60,7 +60,7 @@ struct Channels {
 }
 
 impl<W: Write> RecordFile<W> {
-    /// Returns the writer of a record to `to`.
+    /// Creates the writer of a record to `to`.
     pub fn new(to: W) -> Self {
         Self { pending: Vec::new(), parts: WriterState::Unbegun(Some(to)) }
     }
@@ -87,7 +87,7 @@ impl<W: Write> RecordFile<W> {
         }
     }
 
-    /// Abandons the record as it is: the library would panic on completing a file that cannot be written.
+    /// Leaves the record as it is, because the library would panic when it completes a file that cannot be written.
     fn give_up(&mut self) {
         std::mem::forget(std::mem::replace(&mut self.parts, WriterState::Closed));
     }
@@ -194,7 +194,7 @@ impl Channels {
     }
 }
 
-/// Writes the metadata of the run for users and other programs.
+/// Writes the metadata of the run, which are for users and other programs.
 fn describe<W: Write>(writer: &mut Writer<NoSeek<W>>, begin: &Begin) -> mcap::McapResult<()> {
     let Begin { version, target, plan, command, period, files, beside, safety } = begin;
     let facts = [

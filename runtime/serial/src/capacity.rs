@@ -1,4 +1,4 @@
-//! Capacity of a serial line in a turn.
+//! Computes whether a serial line can transmit the data of a turn.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ pub fn time_of(bytes: usize, speed: u32) -> Duration {
     Duration::from_secs_f64(bytes as f64 * BITS / f64::from(speed.max(1)))
 }
 
-/// Checks that a turn of `period` is long enough for its transmission, which needs `takes`.
+/// Checks that a turn of length `period` is long enough for its transmission, which takes the time `takes`.
 ///
 /// # Errors
 /// Returns a message for the operator if the period is too short.

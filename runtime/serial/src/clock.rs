@@ -1,4 +1,4 @@
-//! Determines the time of a robot's outputs: by the computer's clock or in lockstep.
+//! Determines the time of a robot's outputs, either by the computer's clock or in lockstep.
 
 use std::time::{Duration, Instant};
 
@@ -8,18 +8,18 @@ use mdle_runtime::Nanos;
 /// Source of the time of an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clock {
-    /// The computer's clock: the time since the first output.
+    /// The computer's clock. The time of an output is the time since the first output.
     Wall,
     /// Lockstep: time advances by this duration with each output.
     Stepped(Duration),
 }
 
-/// Factor by which timeouts are longer in lockstep, where an answer takes as long as the robot's computer needs and the
-/// robot stands still meanwhile.
+/// Factor by which timeouts are longer in lockstep. There, an answer may take as long as the robot's computer needs,
+/// because the robot stands still meanwhile.
 const LONGER: u32 = 10;
 
 impl Clock {
-    /// Returns the timeout, by the computer's clock, of an action that the robot has to complete within `limit`.
+    /// Returns the timeout, by the computer's clock, for an action that the robot has to complete within `limit`.
     #[must_use]
     pub const fn patience(self, limit: Duration) -> Duration {
         match self {
@@ -28,8 +28,8 @@ impl Clock {
         }
     }
 
-    /// Returns `true` if `limit` has passed for the robot since `begun`; the robot has received `commands` commands
-    /// since then.
+    /// Returns `true` if the time `limit` has passed for the robot since `begun`. In lockstep, this time depends on
+    /// `commands`, the number of commands that the robot has received since then.
     #[must_use]
     pub fn is_past(self, limit: Duration, begun: Instant, commands: u32) -> bool {
         match self {
@@ -38,7 +38,7 @@ impl Clock {
         }
     }
 
-    /// Waits for `time`, unless the clock advances with the commands to the robot.
+    /// Waits for the time `time`. Returns immediately in lockstep, where time advances with the commands to the robot.
     pub fn pass(self, time: Duration) {
         match self {
             Self::Wall => std::thread::sleep(time),
@@ -46,7 +46,7 @@ impl Clock {
         }
     }
 
-    /// Waits for `time` like [`Clock::pass`], but at most until `request` is made.
+    /// Waits as [`Clock::pass`] does, but only until `request` is made.
     pub fn pass_unless(self, request: &StopRequest, time: Duration) {
         match self {
             Self::Wall => request.wait(time),
@@ -55,18 +55,18 @@ impl Clock {
     }
 }
 
-/// Clock of the outputs of a run.
+/// Clock for the outputs of a run.
 #[derive(Debug)]
 pub struct Times {
     clock: Clock,
     /// Time of the first output, by the computer's clock; `None` before the first output.
     first: Option<Instant>,
-    /// Number of outputs so far.
+    /// Number of outputs that have arrived so far.
     outputs: u64,
 }
 
 impl Times {
-    /// Returns the clock of a run before its first output.
+    /// Creates the clock of a run before its first output.
     #[must_use]
     pub const fn new(clock: Clock) -> Self {
         Self { clock, first: None, outputs: 0 }

@@ -1,22 +1,24 @@
-//! The configuration of a robot as one table: from each line, [`configuration!`](crate::configuration!) generates a
-//! field, its reader, its check and its line of `--print-config`.
+//! The configuration of a robot, declared as one table. From each line of the table,
+//! [`configuration!`](crate::configuration!) generates a field, the code that reads and checks its value, and its line
+//! in the output of `--print-config`.
 
 use std::fmt;
 use std::path::Path;
 
 use crate::settings::Settings;
 
-/// Configuration of a robot: the values in which robots of one kind differ.
+/// Configuration of a robot: the values that differ between robots of the same kind.
 pub trait Configuration: Sized {
-    /// Returns the values of the configuration file and of `device`, and defaults for all other values.
+    /// Reads the values in the configuration file. `device` replaces the device in the file. All other values are
+    /// defaults.
     ///
     /// # Errors
-    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The message gives the
-    /// place and reason.
+    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The message contains
+    /// the place in the file and the reason.
     fn read(file: Option<&Path>, device: Option<&str>) -> Result<(Self, Settings), String>;
 }
 
-/// A configuration, with the source of each value.
+/// A configuration, and the source of each of its values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Configured<C> {
     /// Values of the configuration.
@@ -25,7 +27,7 @@ pub struct Configured<C> {
 }
 
 impl<C: Configuration> Configured<C> {
-    /// Reads the configuration like [`Configuration::read`].
+    /// Reads the configuration as [`Configuration::read`] does.
     ///
     /// # Errors
     /// Fails if [`Configuration::read`] fails.
@@ -34,7 +36,7 @@ impl<C: Configuration> Configured<C> {
     }
 }
 
-/// Prints the configuration as TOML that `--config` can read.
+/// Prints the configuration as TOML that the option `--config` can read.
 impl<C> fmt::Display for Configured<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.settings.fmt(f)
@@ -43,8 +45,8 @@ impl<C> fmt::Display for Configured<C> {
 
 /// Declares a configuration, with one line for each key: `name: type = default, in range, "unit" "help", confidence;`.
 ///
-/// Every configuration begins with a `device` and ends with the gains with which laws steer. The type has a function
-/// `check`, which reports values that are valid individually but not together.
+/// Every configuration begins with a `device`, and ends with the gains that laws use to steer. The type must have a
+/// function `check`, which reports values that are valid individually but not in combination.
 #[macro_export]
 macro_rules! configuration {
     (
@@ -62,7 +64,7 @@ macro_rules! configuration {
             /// Serial port of the robot, or `tcp:ADDRESS:PORT`.
             pub device: String,
             $($(#[$field_meta])* pub $key: $type,)*
-            /// Gains with which laws steer.
+            /// Gains that laws use to steer.
             pub steering: $crate::Steering,
         }
 

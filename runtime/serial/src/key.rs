@@ -1,4 +1,4 @@
-//! A key of a configuration, and the types of its value.
+//! Keys of a configuration, and the types of their values.
 
 use std::fmt;
 
@@ -14,16 +14,16 @@ pub struct Key {
     pub name: &'static str,
     /// Unit of the value; empty if the value has no unit.
     pub unit: &'static str,
-    /// Short description of the value, which follows the unit.
+    /// Short description of the value. It is printed after the unit.
     pub help: &'static str,
     /// `true` if the default has been compared with a real robot.
     pub is_verified: bool,
-    /// Minimum and maximum of a number.
+    /// Minimum and maximum of a number; `None` if the value has no range.
     pub range: Option<(f64, f64)>,
 }
 
 impl Key {
-    /// Returns a key without a range, whose default is verified.
+    /// Creates a key without a range, whose default is verified.
     pub(crate) const fn of(name: &'static str, unit: &'static str, help: &'static str) -> Self {
         Self { name, unit, help, is_verified: true, range: None }
     }
@@ -33,35 +33,36 @@ impl Key {
         self.range.is_none_or(|(least, most)| (least..=most).contains(&value))
     }
 
-    /// Returns the name of the key in a configuration file.
+    /// Returns the name that the key has in a configuration file.
     #[must_use]
     pub fn in_a_file(&self) -> String {
         self.name.replace('_', "-")
     }
 
-    /// Returns the description of the value that `--print-config` shows.
+    /// Returns the description of the value, as `--print-config` shows it.
     pub(crate) fn about(&self) -> String {
         let words: Vec<_> = [self.unit, self.help].into_iter().filter(|words| !words.is_empty()).collect();
         format!("{}{}", words.join(" "), if self.is_verified { "" } else { "; unverified" })
     }
 }
 
-/// Type of a configuration value, with the conversion from its form in a file.
+/// Type of a configuration value, with the conversion from the form that a file contains.
 pub trait Setting: Sized {
     /// Type of the value in a file, and of its default.
     type Written: DeserializeOwned + fmt::Debug;
 
-    /// Describes the value that `key` must have in a file, as the end of a sentence.
+    /// Returns a description of the value that `key` must have in a file, as the end of a sentence.
     fn expected(key: &Key) -> String;
 
-    /// Converts a written value to a value of this type.
+    /// Converts a value in the form that a file contains to this type.
     ///
     /// # Errors
     /// Returns a message with the reason if `key` cannot have this value.
     fn of(key: &Key, written: Self::Written) -> Result<Self, String>;
 }
 
-/// Describes an expected `what` within the range of `key`, with its unit, as the end of a sentence.
+/// Returns a description of the expected value, as the end of a sentence. `what` is the kind of the value; the range
+/// and the unit are those of `key`.
 fn ranged(what: &str, key: &Key) -> String {
     let range = key.range.map(|(least, most)| format!(" from {least} to {most}")).unwrap_or_default();
     let unit = if key.unit.is_empty() { String::new() } else { format!(" {}", key.unit) };
@@ -105,7 +106,7 @@ written_as_it_is! {
 /// Returns the value in `choices` whose name is `written`.
 ///
 /// # Errors
-/// Returns a message with all names, and the most similar one, if no choice has this name.
+/// Returns a message with all names, and the most similar one, if no value has this name.
 pub fn one_of<T: Copy>(key: &Key, written: &str, choices: &[(&str, T)]) -> Result<T, String> {
     choices.iter().find(|(name, _)| *name == written).map(|(_, choice)| *choice).ok_or_else(|| {
         let names: Vec<_> = choices.iter().map(|(name, _)| *name).collect();
@@ -121,7 +122,7 @@ pub fn quoted(words: &[&str]) -> String {
     words.join(" or ")
 }
 
-/// Checks that `value` is between `least` and `most`, ends included.
+/// Checks that `value` is at least `least` and at most `most`.
 ///
 /// # Errors
 /// Returns a message if the value is out of range.

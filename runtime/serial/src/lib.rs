@@ -1,5 +1,5 @@
-//! Shared code of robots on a serial line: the line, the options of their executables, their configuration and its
-//! origin, the time of their outputs, and the check that they move as commanded.
+//! Code that robots on a serial line share: the line, the options of executables, the configuration and the source of
+//! its values, the time of outputs, and the check that a robot moves as commanded.
 #![forbid(unsafe_code)]
 
 mod capacity;

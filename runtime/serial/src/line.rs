@@ -1,4 +1,5 @@
-//! A line to a robot: a serial port, 8N1 without flow control, or a TCP connection to a numeric address.
+//! A line to a robot. This is either a serial port (8N1, without flow control) or a TCP connection to a numeric
+//! address.
 
 use std::fmt;
 use std::fs::{File, OpenOptions};
@@ -23,25 +24,25 @@ pub struct Line {
     port: OwnedFd,
 }
 
-/// Error of a connection to a robot: it cannot be opened, or reading or writing failed.
+/// Error of a connection to a robot. The connection cannot be opened, or reading or writing failed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LineFault {
-    /// A device cannot be opened: its name, and the reason.
+    /// A device cannot be opened. Contains the name of the device, and the reason.
     Open(String, String),
-    /// Another program uses this device.
+    /// Another program uses the device with this name.
     Busy(String),
-    /// This device is not a serial port.
+    /// The device with this name is not a serial port.
     NotSerial(String),
-    /// Before the deadline, no bytes arrived or none could be sent.
+    /// No bytes arrived, or none could be sent, before the deadline.
     Silent,
     /// The line was closed at the other end.
     Closed,
-    /// The line failed for this reason.
+    /// The line failed; contains the reason.
     Failed(String),
 }
 
 impl LineFault {
-    /// Converts a system error of the serial line into a fault; an unplugged device shows up as `EIO`.
+    /// Converts a system error of the serial line to a fault. The system reports an unplugged device as `EIO`.
     fn of(error: Errno) -> Self {
         match error {
             Errno::IO | Errno::NXIO | Errno::NODEV | Errno::CONNRESET | Errno::PIPE => Self::Closed,
@@ -49,7 +50,7 @@ impl LineFault {
         }
     }
 
-    /// Writes the message about this fault for the operator; `robot` names the robot, as in `the Scout`.
+    /// Writes the message about this fault for the operator; `robot` is the name of the robot, such as `the Scout`.
     ///
     /// # Errors
     /// Fails if the formatter failed.
@@ -68,7 +69,7 @@ impl LineFault {
 }
 
 impl Line {
-    /// Opens a serial port at `speed` bits per second, or `tcp:ADDRESS:PORT`. Nothing is sent.
+    /// Opens a serial port at `speed` bits per second, or connects to `tcp:ADDRESS:PORT`. Sends nothing.
     ///
     /// # Errors
     /// Fails if the device is missing, busy or not a terminal, or if no program listens at the address.
@@ -83,7 +84,7 @@ impl Line {
     /// Sends all of `bytes`.
     ///
     /// # Errors
-    /// Fails if the line is closed, or does not accept all bytes before `deadline`.
+    /// Fails if the line is closed, or if it does not accept all bytes before `deadline`.
     pub fn write(&self, bytes: &[u8], deadline: Instant) -> Result<(), LineFault> {
         let mut left = bytes;
         while !left.is_empty() {
@@ -118,7 +119,7 @@ impl Line {
         self.wait(PollFlags::IN, deadline)
     }
 
-    /// Waits until the line is ready for the operation `what`.
+    /// Waits until the line is ready for the operations `what`.
     fn wait(&self, what: PollFlags, deadline: Instant) -> Result<(), LineFault> {
         loop {
             let left = deadline.saturating_duration_since(Instant::now());

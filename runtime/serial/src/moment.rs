@@ -1,10 +1,11 @@
-//! Points in time by a clock that continues while the computer is suspended.
+//! Points in time, measured by a clock that continues while the computer is suspended.
 
 use std::time::Duration;
 
 use rustix::time::{ClockId, clock_gettime};
 
-/// A point in time. The clock of [`std::time::Instant`], in contrast, stops while the computer is suspended.
+/// A point in time. Unlike [`std::time::Instant`], it is measured by a clock that does not stop while the computer is
+/// suspended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Moment(Duration);
 
@@ -17,7 +18,7 @@ impl Moment {
         Self(Duration::new(u64::try_from(time.tv_sec).unwrap_or(0), u32::try_from(time.tv_nsec).unwrap_or(0)))
     }
 
-    /// Returns the time since this point in time, including suspensions.
+    /// Returns the time since this point in time, including the time for which the computer was suspended.
     #[must_use]
     pub fn elapsed(self) -> Duration {
         Self::now().0.saturating_sub(self.0)

@@ -1,8 +1,8 @@
 //! Detects a robot that does not move as commanded, but faster or in the opposite direction. See
 //! docs/src/reference/protocols.md, 3.
 //!
-//! A robot that is blocked by an obstacle, or one of whose sides is stuck, moves less than commanded; this is not
-//! disobedience. The measured speeds of both sides must stay within the band that the commands so far allow. The band
+//! A robot that moves less than commanded, because an obstacle blocks it or one of its sides is stuck, does not
+//! disobey. The measured speeds of both sides must stay within a band, which the previous commands determine. The band
 //! always contains zero and the last two commands. After an earlier command, it narrows only as fast as the robot
 //! brakes.
 
@@ -10,25 +10,25 @@ use std::time::Duration;
 
 use mdle_runtime::Nanos;
 
-/// Part of the commanded deceleration that a robot must achieve.
+/// Fraction of the commanded deceleration that a robot must achieve.
 const PART: f64 = 0.5;
-/// Tolerated distance of a side's speed from the band, in m/s.
+/// Tolerated distance, in m/s, of a side's speed from the band.
 const ERROR: f64 = 0.05;
-/// Tolerated distance of a side's speed from the band, as a part of the highest speed in the band.
+/// Tolerated distance of a side's speed from the band, as a fraction of the highest speed in the band.
 const ERROR_PART: f64 = 0.2;
-/// Maximum time for a robot to stop.
+/// Maximum time that a robot may need to stop.
 const LONGEST: Duration = Duration::from_secs(5);
 /// Maximum time until a robot begins to brake.
 const REACTION: Duration = Duration::from_millis(100);
 
-/// Compares measured speeds with commands, turn by turn.
+/// Compares the measured speeds with the commands, turn by turn.
 #[derive(Debug, Clone)]
 pub struct Obedience {
     /// Maximum time for which the speeds may be outside the band; zero for no limit.
     limit: Nanos,
     /// Band of the common speed of both sides.
     forward: Band,
-    /// Band of half the difference of both sides' speeds.
+    /// Band of half the difference between the speeds of both sides.
     turning: Band,
     last: Option<Nanos>,
     /// Speed of the faster side at the last measurement, in m/s.
@@ -51,9 +51,9 @@ struct Band {
 }
 
 impl Obedience {
-    /// Returns the state of a robot at rest. Its sides brake with `forward` m/s² when they move in the same direction,
-    /// and with `turning` m/s² when they move in opposite directions. The robot may disobey for less than `limit`, or
-    /// without limit if `limit` is zero.
+    /// Creates the state of a robot at rest. Its sides brake with `forward` m/s² when they move in the same direction,
+    /// and with `turning` m/s² when they move in opposite directions. The robot may disobey for less than the time
+    /// `limit`; zero means no limit.
     #[must_use]
     pub const fn new(forward: f64, turning: f64, limit: Duration) -> Self {
         Self {
@@ -66,8 +66,8 @@ impl Obedience {
         }
     }
 
-    /// Records the speeds of the right and the left side at `at`, in m/s, and the command of this turn; returns `true`
-    /// if the robot has disobeyed for the whole time limit.
+    /// Records the measured speeds of the right and the left side at the time `at`, in m/s, and the command of this
+    /// turn. Returns `true` if the robot has disobeyed for the whole time limit.
     pub fn is_broken(&mut self, at: Nanos, command: [f64; 2], measured: [f64; 2]) -> bool {
         let seconds = at.since(self.last.replace(at).unwrap_or(at)).seconds();
         let [right, left] = command;
@@ -84,9 +84,9 @@ impl Obedience {
         self.limit > Nanos::ZERO && since.is_some_and(|since| at.since(since) >= self.limit)
     }
 
-    /// Returns the maximum time in which the robot stops: a reaction time of 100 ms, and twice the braking time at the
-    /// commanded deceleration from the highest speed that the robot may have; at least `least` and at most five
-    /// seconds.
+    /// Returns an upper bound on the time that the robot needs to stop: a reaction time of 100 ms plus twice the time
+    /// to brake from the highest possible speed at the commanded deceleration. The result is at least `least` and at
+    /// most five seconds.
     #[must_use]
     pub fn time_to_stand(&self, least: Duration) -> Duration {
         let time = |band: &Band| band.fastest().max(self.measured) / band.brakes;

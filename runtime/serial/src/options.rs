@@ -8,7 +8,7 @@ use mdle_host::{NamedFile, Pace, Time};
 
 use crate::clock::Clock;
 
-/// Returns `command` with the options of a robot on a serial line.
+/// Adds the options of a robot on a serial line to `command`.
 #[must_use]
 pub fn arguments(command: Command) -> Command {
     command
@@ -43,13 +43,13 @@ pub fn arguments(command: Command) -> Command {
         )
 }
 
-/// Returns the value of `--device`, if the option is present.
+/// Returns the value of the option `--device`; `None` if the option is not given.
 #[must_use]
 pub fn device(matches: &ArgMatches) -> Option<&str> {
     matches.get_one::<String>("device").map(String::as_str)
 }
 
-/// Returns the file of `--config`, if the option is present.
+/// Returns the file that the option `--config` names; `None` if the option is not given.
 #[must_use]
 pub fn config(matches: &ArgMatches) -> Option<&Path> {
     matches.get_one::<PathBuf>("config").map(PathBuf::as_path)
@@ -68,13 +68,15 @@ pub fn prints_config(matches: &ArgMatches) -> bool {
     matches.get_flag("print-config")
 }
 
-/// Returns the clock of the host: the computer's clock, or with `--lockstep` a clock that advances as fast as possible.
+/// Returns the clock of the host. This is the computer's clock; with `--lockstep`, it is a clock that advances as fast
+/// as possible.
 #[must_use]
 pub fn time(matches: &ArgMatches) -> Time {
     if matches.get_flag("lockstep") { Time::Stepped(Pace::Max) } else { Time::Wall }
 }
 
-/// Returns the clock of the robot's outputs: the computer's clock, or with `--lockstep` one `period` per turn.
+/// Returns the clock of the robot's outputs. This is the computer's clock; with `--lockstep`, it advances by `period`
+/// in each turn.
 #[must_use]
 pub fn clock(matches: &ArgMatches, period: Duration) -> Clock {
     if matches.get_flag("lockstep") { Clock::Stepped(period) } else { Clock::Wall }

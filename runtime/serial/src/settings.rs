@@ -1,4 +1,4 @@
-//! Values of a robot's configuration from a TOML file or the defaults, with the origin of each value.
+//! Values of a robot's configuration, which come from a TOML file or are defaults, with the source of each value.
 
 use std::fmt;
 use std::path::Path;
@@ -14,7 +14,7 @@ use crate::shown::{shortened, shown, syntax_error};
 /// Maximum size of a configuration file, in bytes.
 const LARGEST: u64 = 1_000_000;
 
-/// A key with its value, and the origin of the value.
+/// A key with its value and the source of the value.
 #[derive(Debug, Clone, PartialEq)]
 struct SettingEntry {
     key: Key,
@@ -22,20 +22,20 @@ struct SettingEntry {
     from: String,
 }
 
-/// Values of the configuration in use, with the name of the file.
+/// Values of the configuration that are in use, and the name of the file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
     file: Option<String>,
-    /// Values of the file whose keys have not been asked for yet.
+    /// Values of the file whose keys have not been read yet.
     written: Table,
     entries: Vec<SettingEntry>,
 }
 
 impl Settings {
-    /// Reads the configuration file, if there is one.
+    /// Reads the configuration file; without a file, there are no values.
     ///
     /// # Errors
-    /// Fails if the file cannot be read or is not TOML. The message gives the place and reason.
+    /// Fails if the file cannot be read or is not TOML. The message contains the place in the file and the reason.
     pub fn read(file: Option<&Path>) -> Result<Self, String> {
         let Some(path) = file else { return Ok(Self::default()) };
         let name = path.display().to_string();
@@ -44,11 +44,10 @@ impl Settings {
         Ok(Self { file: Some(name), written, entries: Vec::new() })
     }
 
-    /// Checks that every key of the file has been asked for.
+    /// Checks that every key of the file has been read; any other key is unknown.
     ///
     /// # Errors
-    /// Returns a message with the file's name, the unknown key and the most similar key, if a key has not been asked
-    /// for.
+    /// Returns a message with the file's name, the unknown key and the most similar key if a key has not been read.
     pub fn check(&self) -> Result<(), String> {
         let Some(unknown) = self.written.keys().next() else { return Ok(()) };
         let known: Vec<_> = self.entries.iter().map(|entry| entry.key.in_a_file()).collect();
@@ -59,13 +58,13 @@ impl Settings {
         Err(self.blamed(&format!("there is no key `{unknown}`{near}\nhelp: the keys are {keys}")))
     }
 
-    /// Returns `true` if the file has the key with this name, and it has not been asked for.
+    /// Returns `true` if the file contains the key with this name and the key has not been read yet.
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.written.contains_key(name)
     }
 
-    /// Returns the value of `key` in the file, or the default.
+    /// Reads the value of `key` from the file; if the file does not contain the key, returns the default.
     ///
     /// # Errors
     /// Returns a message with the file's name and the reason if the key cannot have this value.
@@ -75,7 +74,8 @@ impl Settings {
         T::of(&key, written).map_err(|why| self.blamed(&why))
     }
 
-    /// Returns the device on the command line; if there is none, the device in the file, or else the first serial port.
+    /// Returns the device that the command line names; if it names none, the device in the file; and if the file has
+    /// none, the first serial port.
     ///
     /// # Errors
     /// Returns a message with the file's name if the device in the file is not a text.
@@ -88,7 +88,7 @@ impl Settings {
         })
     }
 
-    /// Removes and returns the value of `key` in the file; `None` if the file does not have the key.
+    /// Removes and returns the value of `key` in the file; `None` if the file does not contain the key.
     fn taken<T: Setting>(&mut self, key: &Key) -> Result<Option<T::Written>, String> {
         let Some(value) = self.written.remove(&key.in_a_file()) else { return Ok(None) };
         let shown = shown(&value);
@@ -98,8 +98,8 @@ impl Settings {
         })
     }
 
-    /// Returns the steering gains: `rotate`, `align` and `avoid` of the file, and the default for each missing gain.
-    /// With a gain below 0.1 a robot hardly turns; with a gain above 10 it oscillates.
+    /// Reads the steering gains `rotate`, `align` and `avoid` from the file; missing gains have their defaults. With a
+    /// gain below 0.1, a robot hardly turns; with a gain above 10, it oscillates.
     ///
     /// # Errors
     /// Returns a message about a gain that is too small or too large.
@@ -113,27 +113,27 @@ impl Settings {
         })
     }
 
-    /// Returns the message `why` about a value, with the file's name if there is a file.
+    /// Returns the message `why` about a value, together with the file's name if there is a file.
     #[must_use]
     pub fn blamed(&self, why: &str) -> String {
         self.file.as_ref().map_or_else(|| why.to_owned(), |file| format!("{file}: {why}"))
     }
 
-    /// Returns the value in the file or the default, and records it for `--print-config`.
+    /// Returns the value in the file; without such a value, the default. Records the value for `--print-config`.
     fn chosen<W: fmt::Debug>(&mut self, key: Key, written: Option<W>, default: W) -> W {
         let file = self.file.as_deref().filter(|_| written.is_some());
         let from = file.unwrap_or("default").to_owned();
         self.noted(key, written.unwrap_or(default), from)
     }
 
-    /// Records `value` with its origin for `--print-config`, and returns it.
+    /// Returns `value`, after recording it with its source for `--print-config`.
     fn noted<W: fmt::Debug>(&mut self, key: Key, value: W, from: String) -> W {
         self.entries.push(SettingEntry { key, value: format!("{value:?}"), from });
         value
     }
 }
 
-/// Prints TOML that `--config` can read, with the meaning and the origin of each value.
+/// Prints TOML that the option `--config` can read, with the meaning and the source of each value.
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for SettingEntry { key, value, from } in &self.entries {

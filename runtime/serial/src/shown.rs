@@ -1,10 +1,12 @@
-//! Formats values and lines of a configuration file for messages: in plain words, and with a limited length.
+//! Formats values and lines of a configuration file for messages. The result uses plain words, and its length is
+//! limited.
 
 use toml::Value;
 
-/// Maximum number of letters of a text in a message.
+/// Maximum number of characters of a text in a message.
 const LETTERS: usize = 60;
-/// Numbers above this size, or closer to zero than its inverse, are written with an exponent.
+/// Size from which a number is written with an exponent. The same applies to numbers closer to zero than the inverse of
+/// this size.
 const LARGE: f64 = 1e15;
 
 /// Returns `text`, truncated to the maximum length in a message.
@@ -44,7 +46,8 @@ pub(crate) fn shown(value: &Value) -> String {
     }
 }
 
-/// Returns the message about `text` that is not TOML: the line's number, the error, and the beginning of the line.
+/// Returns the message about a text that is not TOML. It contains the line number, the error, and the beginning of the
+/// line.
 pub(crate) fn syntax_error(text: &str, error: &toml::de::Error) -> String {
     let too_large = ["number overflowed", "value was too large", "value was too small", "as i128", "as u128"];
     let reason = match error.message() {
@@ -64,7 +67,7 @@ pub(crate) fn syntax_error(text: &str, error: &toml::de::Error) -> String {
     format!("line {number}: {reason}: `{}`", shortened(line.trim()))
 }
 
-/// Returns the key of a line of TOML.
+/// Returns the key in a line of TOML; `None` if the line has no key.
 fn key_of(line: &str) -> Option<&str> {
     line.split_once('=').map(|(key, _)| key.trim())
 }

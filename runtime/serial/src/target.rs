@@ -16,19 +16,20 @@ use crate::options;
 pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal>> + Sized + 'static {
     /// Name of the target, as in `mdlec --target`.
     const NAME: &'static str;
-    /// Period of a turn without the option `--period`.
+    /// Period of a turn if the option `--period` is not given.
     const PERIOD: Nanos;
-    /// Maximum speed and turn rate of a path, equal to those of `go` in the alphabet.
+    /// Maximum speed and turn rate of a path; they equal the limits of `go` in the alphabet.
     const FASTEST: Twist;
-    /// Settings that a user can change while the robot drives, if there are any.
+    /// Function that returns the settings that a user can change while the robot drives; `None` if there are no such
+    /// settings.
     const SETTINGS: Option<SettingsOf<Self>> = None;
-    /// Type of the configuration: the values in which robots of this kind differ.
+    /// Type of the configuration, which contains the values that differ between robots of this kind.
     type Config: Configuration;
 
-    /// Opens the line and prepares the robot, which is at rest.
+    /// Opens the line, and prepares the robot while it stays at rest.
     ///
     /// # Errors
-    /// Fails if there is no line or no robot, if the robot cannot be driven, or if `request` was made.
+    /// Fails if there is no line or no robot, if the robot is not ready to drive, or if `request` was made.
     fn connect(
         config: Self::Config,
         clock: Clock,
@@ -36,16 +37,17 @@ pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal
         request: &StopRequest,
     ) -> Result<Self, Self::Error>;
 
-    /// Stores the paths that the plan replays.
+    /// Stores the paths that the plan can replay.
     fn take_paths(&mut self, paths: PathStore);
 
     /// Returns the time that the line needs to transmit the data of a turn.
     fn turn_takes(config: &Self::Config) -> Duration;
 
-    /// Returns the maximum time for an answer, in milliseconds.
+    /// Returns the timeout for an answer, in milliseconds, so that it can be changed.
     fn answer(config: &mut Self::Config) -> &mut u64;
 
-    /// Checks that the watchdog does not stop the robot between two commands, if turns follow the computer's clock.
+    /// Checks that the watchdog's timeout is longer than the time between two commands. Called if turns follow the
+    /// computer's clock.
     ///
     /// # Errors
     /// Returns a message with the watchdog's timeout if turns are too long for it.
@@ -98,7 +100,7 @@ impl<R: SerialRobot> Target for SerialTarget<R> {
     }
 }
 
-/// Returns the configuration that the options select.
+/// Reads the configuration that the options select.
 fn configured<R: SerialRobot>(matches: &ArgMatches) -> Result<Configured<R::Config>, Refusal> {
     Configured::read(options::config(matches), options::device(matches)).map_err(Refusal::Usage)
 }

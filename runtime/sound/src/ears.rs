@@ -8,18 +8,19 @@ use crate::room::SoundRoom;
 use crate::source::{RandomStream, SoundSource, SourceSignal};
 use crate::{RATE, SPEED, WINDOW};
 
-/// Length, in samples, of the Fourier transform with which sources are convolved with responses.
+/// Length, in samples, of the Fourier transform that convolves the signals of sources with responses.
 const LENGTH: usize = 16_384;
 /// Maximum length of a room's response, in samples.
 const LONGEST: usize = LENGTH - WINDOW;
-/// Number of the random stream for the microphones' noise. The streams of the sources begin at `SOURCES`.
+/// Number of the stream of random numbers for the microphones' noise. The numbers of the streams for the sources begin
+/// at `SOURCES`.
 const MICROPHONES: u64 = 0;
 const SOURCES: u64 = 1;
 
-/// Place and heading of a head: the ears are at its left and right.
+/// Position and heading of a head, which has an ear on its left and on its right.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EarPose {
-    /// Place on the floor, in metres.
+    /// Position on the floor, in metres.
     pub at: (f64, f64),
     /// Heading, in radians.
     pub heading: f64,
@@ -34,14 +35,14 @@ pub struct Ears {
     chance: RandomStream,
     /// Loudness of the microphones' own noise.
     noise: f64,
-    /// Sound that has left its source and has not yet been heard: the left ear as the real part, the right as the
-    /// imaginary part.
+    /// Sound that has left its source but has not reached the ears yet. The real part is the sound for the left ear,
+    /// the imaginary part that for the right ear.
     under_way: Vec<Complex32>,
 }
 
 impl Ears {
-    /// Returns ears that have heard nothing yet. `seed` determines the noise of the microphones and the signals of the
-    /// sources.
+    /// Returns ears that no sound has reached yet. `seed` determines the noise of the microphones and the signals of
+    /// the sources.
     #[must_use]
     pub fn new(head: SphericalHead, room: SoundRoom, sources: &[SoundSource], seed: u64) -> Self {
         let signal = |(purpose, source): (u64, &SoundSource)| (*source, SourceSignal::new(source.kind, seed, purpose));
@@ -78,8 +79,8 @@ impl Ears {
         }
     }
 
-    /// Adds the next `stretch` samples of source `number`, as both ears will hear them, to the sound that has not yet
-    /// been heard.
+    /// Adds the next `stretch` samples of source `number`, as they will arrive at both ears, to the sound that has not
+    /// reached the ears yet.
     fn emit(&mut self, number: usize, here: &EarPose, stretch: usize) {
         let Some((source, signal)) = self.sources.get_mut(number) else { return };
         // The level is given at 2 m, where the pressure is half of that at 1 m.
@@ -101,8 +102,8 @@ impl Ears {
         }
     }
 
-    /// Returns the impulse response of both ears at the pose `here` to a source at this place: the left ear as the real
-    /// part, the right ear as the imaginary part.
+    /// Returns the impulse response of both ears at the pose `here` to a source at this position. The real part is the
+    /// response of the left ear, the imaginary part that of the right ear.
     fn response(&self, source: (f64, f64), here: &EarPose) -> Vec<Complex32> {
         let mut response = vec![Complex32::default(); LENGTH];
         let (sin, cos) = libm::sincos(here.heading);

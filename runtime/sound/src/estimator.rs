@@ -13,24 +13,24 @@ use crate::{RATE, SPEED, WINDOW};
 const LENGTH: usize = 8192;
 /// Bins of the spectrum that the estimator uses: 500 to 4000 Hz.
 const BAND: std::ops::RangeInclusive<usize> = 93..=743;
-/// Number of delays per sample at which the correlation is computed.
+/// Number of delays for each sample at which the correlation is computed.
 const FINE: usize = 4;
-/// Exponent of the whitening: 0 is plain correlation, 1 the phase transform.
+/// Exponent of the whitening: 0 gives the plain correlation, 1 the phase transform.
 const WHITENING: f64 = 0.7;
-/// Ratio of the radius in equation 7 to the radius of the head. It is not 1, because the equation holds for high
-/// frequencies.
+/// Ratio of the radius in equation 7 to the radius of the head. It is not 1, because the equation is exact only for
+/// high frequencies.
 const WIDER: f64 = 1.05;
-/// Largest delay that is tried, as a multiple of the largest delay by equation 7.
+/// Maximum delay that is considered, as a multiple of the maximum delay by equation 7.
 const MARGIN: f64 = 1.08;
 
-/// Estimator of the direction of a source, for a head with a given radius.
+/// Estimates the direction of a source, for a head with a given radius.
 #[derive(Debug, Clone)]
 pub struct Estimator {
     /// Hann window.
     window: Vec<f32>,
-    /// Complex numbers of modulus 1: a full turn in `LENGTH * FINE` steps.
+    /// Complex numbers of modulus 1, whose angles make up a full turn in `LENGTH * FINE` steps.
     turns: Vec<Complex64>,
-    /// Largest delay that is tried, in steps of the correlation.
+    /// Maximum delay that is considered, in steps of the correlation.
     most: usize,
     /// Sum of the angle and its sine in equation 7, in radians, for a delay of one step of the correlation.
     unit: f64,
@@ -46,7 +46,7 @@ pub struct Estimate {
 }
 
 impl Estimator {
-    /// Returns the estimator for a head of this radius, in metres.
+    /// Creates the estimator for a head of this radius, in metres.
     #[must_use]
     pub fn new(radius: f64) -> Self {
         let steps = f64::from(RATE) * FINE as f64;
@@ -105,8 +105,8 @@ impl Estimator {
         band.iter().map(|bin| Complex64::new(f64::from(bin.re), f64::from(bin.im))).collect()
     }
 
-    /// Returns half the correlation at the delays of the left ear from `-most` to `most` steps. The negative
-    /// frequencies, which contribute the other half, are left out.
+    /// Returns half of the correlation, for delays of the left ear from `-most` to `most` steps. The negative
+    /// frequencies would contribute the other half, and are omitted.
     fn correlation(&self, weighted: &[Complex64]) -> Vec<f64> {
         let mut both = vec![0.0; 2 * self.most + 1];
         for step in 0..=self.most {
@@ -127,13 +127,13 @@ impl Estimator {
     }
 }
 
-/// Returns the whitened value of a bin of the cross spectrum.
+/// Returns the value of a bin of the cross spectrum after whitening.
 fn weight(cross: Complex64) -> Complex64 {
     let square = cross.norm_sqr();
     if square > 0.0 { cross * libm::pow(square, -WHITENING / 2.0) } else { cross }
 }
 
-/// Solves equation 7 for the angle: `delay` is the sum of the angle and its sine.
+/// Returns the angle by equation 7, given the sum `delay` of the angle and its sine.
 fn angle(delay: f64) -> f64 {
     if delay.abs() >= 1.0 + FRAC_PI_2 {
         return FRAC_PI_2.copysign(delay);
@@ -151,7 +151,7 @@ mod tests {
     use super::*;
     use crate::source::RandomStream;
 
-    /// Returns noise in both ears, which the right ear hears `late` samples after the left ear.
+    /// Returns noise in both ears, which reaches the right ear `late` samples after the left ear.
     fn delayed(late: usize) -> Vec<[f32; 2]> {
         let mut chance = RandomStream::new(3, 0);
         let noise: Vec<_> = (0..WINDOW + late).map(|_| chance.noise() as f32).collect();

@@ -1,13 +1,13 @@
 //! Rejects uncertain estimates while better ones are available.
 
-/// Limit of the ratio after an estimate was kept.
+/// Limit of the ratio immediately after an estimate was kept.
 const HIGHEST: f64 = 7.0;
-/// Minimum limit of the ratio, which is reached when no estimate is kept for some time.
+/// Lowest limit of the ratio, which is reached if no estimate is kept for some time.
 const LOWEST: f64 = 3.5;
-/// Decrease of the limit per second in which no estimate is kept.
+/// Decrease of the limit in each second in which no estimate is kept.
 const FALL: f64 = 1.4;
 
-/// Gate that keeps an estimate if the ratio of the maximum of its correlation to the root mean square exceeds a limit.
+/// Keeps an estimate if the ratio of the maximum of its correlation to the root mean square exceeds a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RatioGate {
     limit: f64,
@@ -20,8 +20,8 @@ impl Default for RatioGate {
 }
 
 impl RatioGate {
-    /// Returns `true` if an estimate with this ratio is kept. `seconds` is the time since the previous samples; the
-    /// limit falls with this time while nothing is kept.
+    /// Returns `true` if an estimate with this ratio is kept. `seconds` is the time since the previous samples. While
+    /// no estimate is kept, the limit decreases with this time.
     pub fn keeps(&mut self, ratio: f64, seconds: f64) -> bool {
         let keeps = ratio > self.limit;
         self.limit = if keeps { HIGHEST } else { (self.limit - FALL * seconds).max(LOWEST) };

@@ -1,4 +1,4 @@
-//! Computes the sound at the surface of a hard sphere as impulse responses, by the exact series (Kuhn, "Model for the
+//! Computes impulse responses for the sound at the surface of a hard sphere, by the exact series (Kuhn, "Model for the
 //! interaural time differences in the azimuthal plane", 1977).
 
 use std::f64::consts::PI;
@@ -9,13 +9,13 @@ use crate::{RATE, SPEED};
 
 /// Length of a response, in samples.
 pub(crate) const TAPS: usize = 128;
-/// Delay of a response, in samples, so that the response can begin before the sound reaches the centre of the head.
+/// Delay of a response, in samples, which allows the response to begin before the sound reaches the centre of the head.
 pub(crate) const LATE: usize = 40;
-/// Length, in samples, of the Fourier transform with which a response is computed.
+/// Length, in samples, of the Fourier transform by which a response is computed.
 const PERIOD: usize = 256;
 /// Maximum number of terms of the series.
 const TERMS: usize = 200;
-/// Frequencies, in Hz, between which the spectrum of a response falls to zero, so that the response is short.
+/// Frequencies, in Hz, between which the spectrum of a response falls to zero. This makes the response short.
 const FALL: (f64, f64) = (12_000.0, 18_000.0);
 /// Number of angles of incidence: one for each degree from 0 to 180.
 const ANGLES: usize = 181;
@@ -23,13 +23,13 @@ const ANGLES: usize = 181;
 /// A hard spherical head with a microphone at each end of a diameter.
 #[derive(Debug, Clone)]
 pub struct SphericalHead {
-    /// Response for each angle, in whole degrees, between the direction of the sound and the direction of the
+    /// Responses, one for each angle in whole degrees between the direction of the sound and the direction of the
     /// microphone.
     responses: Vec<[f32; TAPS]>,
 }
 
 impl SphericalHead {
-    /// Returns the head of this radius, in metres.
+    /// Creates the head of this radius, in metres.
     #[must_use]
     pub fn new(radius: f64) -> Self {
         let waves: Vec<_> = (1..=PERIOD / 2).map(|bin| Series::new(wave_number(bin, radius))).collect();
@@ -48,7 +48,7 @@ impl SphericalHead {
     }
 }
 
-/// Returns the product of wave number and radius at a bin of the transform.
+/// Returns the product of the wave number and the radius at a bin of the transform.
 fn wave_number(bin: usize, radius: f64) -> f64 {
     2.0 * PI * frequency(bin) * radius / SPEED
 }
@@ -90,7 +90,7 @@ fn low_pass(frequency: f64) -> f64 {
 struct Series(Vec<Complex64>);
 
 impl Series {
-    /// Returns the series for this product of wave number and radius, above 0.
+    /// Creates the series for a product `ka` of wave number and radius, which is above 0.
     fn new(ka: f64) -> Self {
         let (sin, cos) = libm::sincos(ka);
         // Spherical Hankel functions of the first kind, of orders 0 and 1; the loop computes the higher orders.
@@ -109,8 +109,8 @@ impl Series {
         Self(factors)
     }
 
-    /// Returns the ratio of the pressure at a point of the sphere to the pressure of the undisturbed wave at the
-    /// sphere's centre; a positive phase is a lead.
+    /// Returns the ratio of the pressure at a point of the sphere to the pressure that the wave would have at the
+    /// sphere's centre without the sphere. If the phase is positive, the pressure at the point is ahead.
     fn transfer(&self, cosine: f64) -> Complex64 {
         let (mut before, mut polynomial) = (0.0, 1.0);
         let mut sum = Complex64::new(0.0, 0.0);
@@ -124,7 +124,8 @@ impl Series {
     }
 }
 
-/// Returns the factor of the Legendre polynomial of this order, from the derivative `slope` of its Hankel function.
+/// Returns the factor of the Legendre polynomial of this order, given the derivative `slope` of the Hankel function of
+/// the same order.
 fn factor(order: usize, slope: Complex64, ka: f64) -> Complex64 {
     let power = match order % 4 {
         0 => Complex64::new(0.0, 1.0),
@@ -140,8 +141,8 @@ fn factor(order: usize, slope: Complex64, ka: f64) -> Complex64 {
 mod tests {
     use super::*;
 
-    /// Returns the ratio of the delay between two microphones at ±90° to the delay by equation 7. The delay is measured
-    /// from the phases in a frequency band, with equal weights.
+    /// Returns the ratio of the actual delay between two microphones at ±90° to the delay by equation 7. The actual
+    /// delay is measured from the phases in a frequency band, with equal weights.
     fn over_equation_7(radius: f64, (from, to): (f64, f64), bearing: f64) -> f64 {
         let sin = libm::sin(bearing);
         let [left, right] = [sin, -sin];

@@ -1,13 +1,13 @@
-//! A histogram of bearings in odometry coordinates, in which the true direction of a source prevails over the direction
-//! mirrored at the axis of the ears.
+//! A histogram of bearings in odometry coordinates. In it, the true direction of a source prevails over the direction
+//! that is its mirror image at the axis of the ears.
 
 use std::f64::consts::{PI, TAU};
 
 /// Number of bins, each of 5°.
 const BINS: usize = 72;
-/// Part of a bin that spreads to each neighbour in a turn, since the source may move.
+/// Fraction of a bin's probability that spreads to each neighbouring bin in a turn, because the source may move.
 const SPREAD: f64 = 0.02;
-/// Part of all probabilities that is replaced by a uniform distribution in a turn.
+/// Fraction of all probabilities that is replaced by a uniform distribution in a turn.
 const FORGOTTEN: f64 = 0.02;
 /// Standard deviation of an estimate, in radians: 8°.
 const DEVIATION: f64 = 8.0 * PI / 180.0;
@@ -38,7 +38,7 @@ impl Histogram {
     }
 
     /// Updates the probabilities with an estimate, made at this heading, of the angle from straight ahead to the left,
-    /// in radians. A head cannot distinguish front from back: the angle is from -90° to 90°.
+    /// in radians. The angle is from -90° to 90°, because a head cannot distinguish front from back.
     pub fn take(&mut self, angle: f64, heading: f64) {
         for (place, bin) in self.bins.iter_mut().enumerate() {
             let off = (libm::asin(libm::sin(centre(place) - heading)) - angle) / DEVIATION;
@@ -48,7 +48,8 @@ impl Histogram {
         self.bins.iter_mut().for_each(|bin| *bin /= sum);
     }
 
-    /// Returns the most probable bearing, in radians: the weighted mean of the greatest bin and its neighbours.
+    /// Returns the most probable bearing, in radians: the weighted mean of the bin with the highest probability and its
+    /// neighbours.
     #[must_use]
     pub fn bearing(&self) -> f64 {
         let at = |place: usize| self.bins.get(place % BINS).copied().unwrap_or_default();

@@ -1,8 +1,9 @@
-//! Sound for robots with two microphones on a hard spherical head (paper, section III-G): what they hear in a room, and
-//! the bearing of a source by the delay between them (paper, equation 7).
+//! Sound for robots with two microphones on a hard spherical head (paper, section III-G): computes the signals that the
+//! microphones receive in a room, and estimates the bearing of a source from the delay between them (paper, equation
+//! 7).
 //!
-//! Nothing here does I/O or depends on the machine: no wall clock, no platform trigonometry, no instructions chosen at
-//! run time. The same calls return the same bits everywhere.
+//! The crate does no I/O, and does not depend on the machine: it uses no wall clock, no trigonometric functions of the
+//! platform, and no instructions that are selected at run time. The same calls return the same bits everywhere.
 #![forbid(unsafe_code)]
 
 mod ears;

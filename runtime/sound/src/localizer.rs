@@ -2,7 +2,7 @@
 
 use crate::{Estimator, Histogram, RatioGate};
 
-/// Estimates of the bearing of a source over time, in odometry coordinates.
+/// Estimates the bearing of a source over time, in odometry coordinates.
 #[derive(Debug, Clone)]
 pub struct Localizer {
     estimator: Estimator,
@@ -13,7 +13,7 @@ pub struct Localizer {
 }
 
 impl Localizer {
-    /// Returns a localizer for a head of this radius, in metres.
+    /// Creates a localizer for a head of this radius, in metres.
     #[must_use]
     pub fn new(radius: f64) -> Self {
         let (estimator, gate, histogram) = (Estimator::new(radius), RatioGate::default(), Histogram::default());

@@ -1,17 +1,17 @@
-//! Computes the reflections in a box-shaped room, all of whose walls reflect alike, by image sources (Allen and
-//! Berkley, 1979).
+//! Computes the reflections in a box-shaped room whose walls all reflect in the same way, by the method of image
+//! sources (Allen and Berkley, 1979).
 
 use crate::SPEED;
 
 /// Height of the room, in metres.
 const HEIGHT: f64 = 2.7;
-/// Height of ears and sources above the floor, in metres. At a smaller height, the echo of the floor would arrive
-/// within the delays of a head.
+/// Height of ears and sources above the floor, in metres. At a smaller height, the echo of the floor would arrive so
+/// early that its delay would be as short as the delays between the ears.
 const EARS: f64 = 1.2;
-/// Minimum distance for the loudness of a source, in metres: a nearer source is no louder.
+/// Distance of a source, in metres, below which its loudness no longer increases.
 const NEAREST: f64 = 0.2;
 
-/// Maximum number of reflections of a sound that is still heard.
+/// Maximum number of reflections of a sound that is considered.
 const ORDER: i32 = 5;
 
 /// A room, or open air.
@@ -19,13 +19,13 @@ const ORDER: i32 = 5;
 pub struct SoundRoom {
     /// Two opposite corners of the floor, in metres.
     corners: [(f64, f64); 2],
-    /// Part of the pressure that a wall reflects.
+    /// Fraction of the pressure that a wall reflects.
     reflects: f64,
-    /// Maximum length of the path of a sound that is still heard, in metres; 0 in open air.
+    /// Maximum length of the path of a sound that is considered, in metres; 0 in open air.
     longest: f64,
 }
 
-/// A source, or a mirror image of it in the walls, as a listener hears it.
+/// A source, or a mirror image of it in the walls, relative to a listener.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ImageSource {
     /// Vector from the listener, in metres.
@@ -48,10 +48,10 @@ impl SoundRoom {
         Self { corners: [(0.0, 0.0); 2], reflects: 0.0, longest: 0.0 }
     }
 
-    /// Returns a room over the rectangle from `min` to `max`, in metres. Its reverberation time by Eyring's formula, in
-    /// which sound falls by 60 dB, is `t60` seconds, but at most [`SoundRoom::T60_MOST`]. Sound that was reflected more
-    /// than five times is left out, so that the end of the reverberation is missing. Returns open air unless `t60` and
-    /// the sides are above 0.
+    /// Creates a room over the rectangle from `min` to `max`, in metres. Its reverberation time, in which sound falls
+    /// by 60 dB by Eyring's formula, is `t60` seconds, but at most [`SoundRoom::T60_MOST`]. Sound that has been
+    /// reflected more than five times is omitted, so the end of the reverberation is missing. If `t60` or a side is not
+    /// above 0, returns open air.
     #[must_use]
     pub fn new(min: (f64, f64), max: (f64, f64), t60: f64) -> Self {
         let (width, depth) = (max.0 - min.0, max.1 - min.1);
@@ -66,7 +66,8 @@ impl SoundRoom {
         Self { corners: [min, max], reflects, longest: SPEED * t60 / 2.0 }
     }
 
-    /// Calls `visit` with each image of a source at `source` that is heard at `here`, the source itself first.
+    /// Calls `visit` with each image of a source at `source` whose sound is considered at `here`, beginning with the
+    /// source itself.
     pub(crate) fn images(&self, source: (f64, f64), here: (f64, f64), mut visit: impl FnMut(ImageSource)) {
         let direct = [source.0 - here.0, source.1 - here.1, 0.0];
         visit(self.image(direct, length(direct), 0));
@@ -98,7 +99,7 @@ impl SoundRoom {
         ImageSource { from, distance, pressure: libm::pow(self.reflects, f64::from(walls)) / distance }
     }
 
-    /// Returns the images along an axis with a wall at 0 and one at `width`.
+    /// Returns the images along an axis with one wall at 0 and another at `width`.
     fn along(&self, source: f64, here: f64, width: f64) -> Vec<Along> {
         let most = (libm::ceil(self.longest / (2.0 * width)) as i32).saturating_add(1);
         let pair = |number: i32| {

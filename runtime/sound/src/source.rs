@@ -17,14 +17,14 @@ pub enum SoundKind {
     Speech,
 }
 
-/// A source of sound at a place.
+/// A source of sound at a position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoundSource {
-    /// Place on the floor, in metres.
+    /// Position on the floor, in metres.
     pub at: (f64, f64),
     /// Kind of the sound.
     pub kind: SoundKind,
-    /// Level of the sound at a distance of 2 m, relative to the noise of a microphone, in dB.
+    /// Level of the sound at a distance of 2 m, in dB relative to the noise of a microphone.
     pub level: f64,
 }
 
@@ -39,14 +39,15 @@ impl RandomStream {
         Self(random)
     }
 
-    /// Returns a nearly normal random number of mean 0 and variance 1: the sum of four uniform random numbers.
+    /// Returns a random number with a nearly normal distribution of mean 0 and variance 1: the sum of four uniform
+    /// random numbers.
     pub(crate) fn noise(&mut self) -> f64 {
         let bits = self.0.next_u64();
         let sum: u64 = (0..4).map(|part| bits >> (16 * part) & 0xffff).sum();
         (sum as f64 / 65_536.0 - 2.0) * 1.732
     }
 
-    /// Returns a uniform random number from 0 to 1.
+    /// Returns a random number with a uniform distribution from 0 to 1.
     pub(crate) fn even(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -69,7 +70,7 @@ struct Speech {
     syllable: (f64, f64),
     /// Length of the pause after the syllable.
     pause: f64,
-    /// Output of the low-pass.
+    /// Output of the low-pass filter.
     low: f64,
 }
 

@@ -1,13 +1,13 @@
-//! Numbers without a byte 1B, for controllers that may not accept this byte as a value. See
+//! Replaces numbers that contain a byte 1B, because some controllers may not accept this byte as a value. See
 //! docs/src/reference/protocols.md, 2.2.
 //!
-//! No known program that drives an rFLEX escapes the byte 1B. These programs replace a turn rate that contains a byte
-//! 1B by the nearest turn rate without one. This module does so for every byte of every number.
+//! No known program that drives an rFLEX escapes the byte 1B. Instead, these programs replace a turn rate that contains
+//! a byte 1B by the nearest turn rate without one. This module does the same for every byte of every number.
 
 /// The escape byte 1B, which begins a two-byte mark on the line.
 pub(crate) const ESCAPE: u8 = 0x1B;
 
-/// Returns the nearest number in which none of the four bytes is 1B; if two numbers are equally near, the lower one.
+/// Returns the nearest number without a byte 1B. If two numbers are equally near, returns the lower one.
 #[must_use]
 pub fn avoided(number: u32) -> u32 {
     let bytes = number.to_be_bytes();

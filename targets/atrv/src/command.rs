@@ -5,7 +5,7 @@ use crate::frame::{FrameBytes, Packet, check};
 
 /// Maximum number of data bytes of a command.
 const MOST: usize = 14;
-/// Maximum amount by which a number is reduced so that the frame's checksum is not 1B.
+/// Maximum amount by which a number is reduced so that the checksum of the frame is not 1B.
 const NUDGES: u32 = 8;
 
 /// An axis of motion.
@@ -13,7 +13,7 @@ const NUDGES: u32 = 8;
 pub enum Axis {
     /// Motion forward and backward; forward is positive.
     Translation,
-    /// Turn; counter-clockwise is positive.
+    /// Rotation; counter-clockwise is positive.
     Rotation,
 }
 
@@ -33,7 +33,7 @@ pub struct AxisMotion {
 pub enum Command {
     /// Report the battery's voltage and the state of the brake.
     Status,
-    /// Move the axis as given.
+    /// Move the axis with these parameters.
     Move(Axis, AxisMotion),
     /// Restore the default settings.
     Defaults,
@@ -45,7 +45,7 @@ pub enum Command {
     Reports(u32),
     /// Report the digital inputs at this interval; 0 stops the reports.
     Inputs(u32),
-    /// Run the sonars, and let each sonar wait this long for its echo.
+    /// Switch the sonars on, and let each sonar wait for its echo for this time.
     Sonars(u32),
     /// Switch the sonars off.
     Deaf,
@@ -56,7 +56,7 @@ pub enum Command {
 pub enum Escape {
     /// Numbers are changed so that no byte has the value 1B.
     Avoid,
-    /// Bytes with the value 1B are escaped.
+    /// Bytes with the value 1B are escaped, that is, sent as a two-byte mark.
     Mark,
 }
 
@@ -127,7 +127,7 @@ impl Command {
 /// Data of a command under construction.
 struct Data {
     escape: Escape,
-    /// Amount by which the first number above [`NUDGES`] is reduced; smaller numbers, such as 0, stay unchanged.
+    /// Amount by which the first number above [`NUDGES`] is reduced. Smaller numbers, such as 0, are not changed.
     nudge: u32,
     bytes: [u8; MOST],
     count: usize,

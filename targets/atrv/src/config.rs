@@ -1,4 +1,4 @@
-//! Configuration of an ATRV: a TOML file, the defaults, and the source of each value.
+//! Configuration of an ATRV: values from a TOML file and defaults, and the source of each value.
 
 use std::time::Duration;
 
@@ -103,7 +103,7 @@ impl Setting for Escape {
 }
 
 impl Config {
-    /// Checks the conditions that the range of a single value cannot express.
+    /// Checks conditions on the values that cannot be expressed as the range of a single value.
     fn check(&self) -> Result<(), String> {
         within("inputs", self.inputs as f64, if self.inputs == 0 { 0.0 } else { 300.0 }, 60_000.0)?;
         within("plugged-above", self.plugged_above, self.low_battery, 40.0)?;

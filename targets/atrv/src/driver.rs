@@ -1,5 +1,5 @@
-//! The driver of an ATRV, as a kinetic state machine: each input is sent as two velocity commands, and the output is
-//! computed from the latest reports (paper, Eq. 1).
+//! The driver of an ATRV, as a kinetic state machine (paper, Eq. 1). Each input is sent as two velocity commands; the
+//! output is computed from the latest reports.
 
 use std::time::{Duration, Instant};
 
@@ -23,16 +23,18 @@ const HALF_LENGTH: Meters = Meters(0.315);
 const HALF_WIDTH: Meters = Meters(0.27);
 /// Radius of the smallest circle around the body.
 const RADIUS: Meters = Meters(0.415);
-/// Distance, along a wall beside the robot, between the points that the two sonars at 18° from the wall's normal hear,
-/// in metres.
+/// Distance between two points on a wall beside the robot, in metres: the points that reflect the pings of the two
+/// sonars at 18° from the wall's normal.
 const SONARS_APART: Meters = Meters(0.33);
-/// Number of consistent pings that confirm a free path on a robot whose sonars fire in turn.
+/// Number of pings that must agree before a direction is treated as free, on a robot whose sonars fire one after the
+/// other.
 const CONFIRMATION: usize = 2;
-/// Maximum time within which the robot releases its brake and each sonar pings several times.
+/// Maximum time until the robot has released its brake and each sonar has pinged several times.
 const STARTING: Duration = Duration::from_millis(1000);
-/// Minimum time to wait for the robot to come to rest before its brake is set; from 0.2 m/s it needs 0.2 s.
+/// Minimum time to wait for the robot to come to rest before its brake is set. A robot that drives at 0.2 m/s needs 0.2
+/// s.
 const STOPPING: Duration = Duration::from_millis(800);
-/// Timeout in lockstep for a report during a stop, and for the line to accept the last commands.
+/// Timeout in lockstep for a report while the robot is being stopped, and for the line to accept the last commands.
 const ANSWER: Duration = Duration::from_millis(150);
 /// Timeout from the command to brake until the robot reports that its brake is set.
 const BRAKING: Duration = Duration::from_millis(500);
@@ -40,12 +42,12 @@ const BRAKING: Duration = Duration::from_millis(500);
 const AGAIN: Duration = Duration::from_millis(100);
 /// Interval at which the driver checks whether the robot is at rest.
 const LOOK: Duration = Duration::from_millis(50);
-/// Maximum speed at which a robot counts as being at rest, in m/s and rad/s.
+/// Maximum speed at which a robot is treated as being at rest, in m/s and rad/s.
 const STANDS: f64 = 0.01;
-/// Interval of the bumper reports, in microseconds; other drivers request the same interval.
+/// Interval of the bumper reports, in microseconds. It is the interval that other drivers request.
 const INPUTS: u32 = 100_000;
 
-/// Driver of an ATRV that reports its position.
+/// Driver of an ATRV. The robot has begun to report its position.
 #[derive(Debug)]
 pub struct Atrv {
     mouth: Mouth,
@@ -53,7 +55,7 @@ pub struct Atrv {
     clock: Clock,
     times: Times,
     hearing: Hearing,
-    /// Drift of the odometry, measured at walls.
+    /// Drift of the odometry heading, estimated from walls.
     compass: Compass,
     obedience: Obedience,
     /// Interval of the position reports.
@@ -66,7 +68,7 @@ pub struct Atrv {
     pub(crate) paths: PathStore,
 }
 
-/// Returns the transmission time of all commands of a turn, including the pause after each command.
+/// Returns the time for transmitting all commands of a turn, including the pause after each command.
 pub(crate) fn turn_takes(config: &Config) -> Duration {
     let [along, round] = motion::commands(&Twist::default(), config);
     let commands = [Command::Status, along, round];
@@ -75,7 +77,7 @@ pub(crate) fn turn_takes(config: &Config) -> Duration {
 }
 
 impl Atrv {
-    /// Opens the line and prepares the robot. Then the robot is at rest, its brake is released, it reports its
+    /// Opens the line and prepares the robot. Afterwards, the robot is at rest, its brake is released, it reports its
     /// position, and each sonar has pinged.
     ///
     /// # Errors
@@ -169,17 +171,16 @@ impl Atrv {
         self.clock.pass(Duration::from_millis(self.config.pause));
     }
 
-    /// Reads the reports that have arrived; in lockstep, waits for all reports of the turn.
+    /// Reads the reports that have arrived. In lockstep, waits until all reports of the turn have arrived.
     fn hear(&mut self, at: Nanos, patience: Duration) -> Result<(), Fault> {
         self.hearing.take(self.mouth.line(), at, self.a_turn, patience)
     }
 
-    /// Sends stop commands until the robot reports that it is at rest. Commands may reach the robot even if its reports
-    /// are lost.
+    /// Sends stop commands until the robot reports that it is at rest. It continues even if no reports arrive, because
+    /// commands may reach the robot although its reports are lost.
     ///
     /// # Errors
-    /// Fails if no command can be sent, or if the robot has not reported within the time limit, or has not reported
-    /// that it is at rest.
+    /// Fails if no command can be sent, or if the robot has not reported within the time limit that it is at rest.
     fn stands(&mut self) -> Result<(), Fault> {
         let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
         // Earlier reports describe an earlier time. A read error is detected below.
@@ -211,11 +212,10 @@ impl Atrv {
     }
 
     /// Sends the command to brake until the robot reports that the brake is set. A report that the robot is at rest is
-    /// not enough: a robot that receives no commands stops itself.
+    /// not sufficient, because a robot that receives no commands also stops.
     ///
     /// # Errors
-    /// Fails if no command can be sent, or if the robot has not answered within the time limit, or has not reported
-    /// that its brake is set.
+    /// Fails if no command can be sent, or if the robot has not reported within the time limit that its brake is set.
     fn brakes(&mut self) -> Result<(), Fault> {
         self.hearing.forget_brake();
         let end = Instant::now() + self.clock.patience(BRAKING);
@@ -230,7 +230,7 @@ impl Atrv {
         }
     }
 
-    /// Returns `true` if the robot's reports since the beginning of the stop show that it is at rest.
+    /// Returns `true` if the reports that have arrived since the beginning of the stop show that the robot is at rest.
     fn is_at_rest(&mut self, patience: Duration) -> Result<bool, Fault> {
         let deadline = Instant::now() + patience;
         let Twist { v, omega } = self.hearing.speed(self.mouth.line(), self.a_turn.max(1), deadline)?;

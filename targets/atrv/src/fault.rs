@@ -1,4 +1,4 @@
-//! Faults of an ATRV, each with a sentence that tells the operator how to fix it.
+//! Faults of an ATRV. Each has a message that explains to the operator how to correct the fault.
 
 use std::fmt;
 
@@ -8,10 +8,11 @@ use crate::command::Axis;
 use crate::frame::Garbled;
 use crate::report::Unreadable;
 
-/// Reason why the robot cannot be driven, or can no longer be driven.
+/// Reason why the robot is not ready to drive, or can no longer be driven.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
-    /// The run was asked to end while the robot was being prepared. Contains a fault if the robot could not be stopped.
+    /// The run was asked to end while the robot was being prepared. Contains the fault if the robot could not be
+    /// stopped.
     Ended(Option<Box<Self>>),
     /// The line cannot be opened or is closed, or no report arrived in time.
     Line(LineFault),
@@ -25,17 +26,19 @@ pub enum Fault {
     Braked,
     /// The sonars of this direction, from 0 to 15, do not report.
     Deaf(u8),
-    /// The watchdog has stopped the robot because no motion was commanded for this number of milliseconds.
+    /// The watchdog has stopped the robot, because no motion was commanded for too long. Contains this time in
+    /// milliseconds.
     Overslept(u64),
-    /// The robot sends reports, but does not answer requests: the line from the driver to the robot is cut.
+    /// The robot sends reports, but does not answer requests, because the line from the driver to the robot is cut.
     Unheard,
     /// The robot does not report this axis.
     NoAxis(Axis),
     /// The robot does not report this bumper.
     Numb(u8),
-    /// The robot has moved faster than commanded, or in the opposite direction, for this number of milliseconds.
+    /// The robot has moved faster than commanded, or in the opposite direction, for too long. Contains this time in
+    /// milliseconds.
     Disobeys(u64),
-    /// Consecutive positions are too far from each other.
+    /// Consecutive reported positions are too far from each other.
     Leaps,
     /// The robot has not come to rest after the command to stop.
     Moves,

@@ -1,7 +1,8 @@
 //! Frames on the rFLEX line: start, port, id, opcode, length, data, checksum and end. Each byte 1B inside a frame is
 //! escaped. See docs/src/reference/protocols.md, 2.2.
 //!
-//! The bytes 1B 00 mean the value 1B; 1B 02 begins a frame, 1B 03 ends it, and 1B 01 is filler without a meaning.
+//! The bytes 1B 00 represent the value 1B; 1B 02 begins a frame, 1B 03 ends a frame, and 1B 01 is filler without a
+//! meaning.
 
 /// First byte of a two-byte mark.
 const ESCAPE: u8 = 0x1B;
@@ -19,15 +20,15 @@ const HEAD: usize = 4;
 const LONGEST: usize = HEAD + 255 + 1;
 /// Maximum number of data bytes in a packet that the driver writes.
 const MOST: usize = 32;
-/// Maximum transmitted length of a packet with [`MOST`] data bytes, in bytes, if every byte is escaped.
+/// Maximum length, in bytes, of a transmitted packet with [`MOST`] data bytes: the length if every byte is escaped.
 const ROOM: usize = 2 * (HEAD + MOST + 1) + 4;
 
 /// Content of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Packet<'a> {
-    /// The part of the robot that receives or sends the packet.
+    /// Part of the robot that receives or sends the packet.
     pub port: u8,
-    /// Number that the robot increments for each packet, and that the driver ignores.
+    /// Number of the packet. The robot increments it for each packet; the driver ignores it.
     pub id: u8,
     /// Number that identifies the command or report within its port.
     pub opcode: u8,
@@ -45,13 +46,14 @@ pub struct FrameBytes {
 /// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// Length mismatch: number of data bytes that the frame declares, and number that was received.
+    /// The length is wrong. Contains the number of data bytes that the frame declares, and the number that was
+    /// received.
     Length(usize, usize),
-    /// Checksum mismatch: checksum of the received bytes, and checksum in the frame.
+    /// The checksum is wrong. Contains the checksum of the received bytes, and the checksum in the frame.
     Check(u8, u8),
-    /// This byte follows 1B, but is not the second byte of a known mark.
+    /// A byte 1B is followed by this byte, which is not the second byte of a known mark.
     Mark(u8),
-    /// This byte is outside of any frame.
+    /// This byte was received outside of any frame.
     Outside(u8),
 }
 
@@ -74,8 +76,8 @@ pub(crate) fn check(bytes: &[u8]) -> u8 {
 }
 
 impl Packet<'_> {
-    /// Returns the transmitted bytes of the frame, with at most 32 bytes of data. With `marks`, bytes with the value 1B
-    /// are escaped.
+    /// Encodes the packet for transmission; it may have at most 32 bytes of data. If `marks` is `true`, bytes with the
+    /// value 1B are escaped.
     #[must_use]
     pub fn written(&self, marks: bool) -> FrameBytes {
         let data = self.data.get(..self.data.len().min(MOST)).unwrap_or_default();
@@ -114,8 +116,8 @@ impl FrameBytes {
 /// State of a frame reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ReaderState {
-    /// Outside of any frame. `after_escape` is `true` if the last byte was 1B; `is_reported` is `true` if the error for
-    /// these bytes has been returned.
+    /// Outside of any frame. `after_escape` is `true` if the last byte was 1B; `is_reported` is `true` if the error
+    /// about these bytes has already been returned.
     Outside { after_escape: bool, is_reported: bool },
     /// Inside a frame. `after_escape` is `true` if the last byte was 1B.
     Inside { after_escape: bool },
@@ -136,10 +138,11 @@ impl Default for Reader {
 }
 
 impl Reader {
-    /// Reads the next byte, and returns the packet that the byte completes, if any.
+    /// Processes the next byte. Returns the packet that the byte completes; `None` if it completes no packet.
     ///
     /// # Errors
-    /// Fails if the bytes so far are not a frame. The reader then waits for the beginning of the next frame.
+    /// Fails if the bytes that have been received so far are not a frame. The reader then waits for the beginning of
+    /// the next frame.
     pub fn take(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match (self.place, byte) {
             (ReaderState::Outside { after_escape: true, .. }, START)
@@ -191,7 +194,7 @@ impl Reader {
         Ok(None)
     }
 
-    /// Stores a byte of the packet, which does not complete the packet. Fails if the packet is too long.
+    /// Stores a byte of the packet that does not complete the packet. Fails if the packet is too long.
     fn keep(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match self.bytes.get_mut(self.count) {
             Some(place) => {
@@ -206,7 +209,7 @@ impl Reader {
         }
     }
 
-    /// Returns the data length that the packet's header declares.
+    /// Returns the length of the data, as declared in the packet's header.
     fn declared_length(&self) -> usize {
         self.bytes.get(HEAD - 1).copied().map_or(0, usize::from)
     }

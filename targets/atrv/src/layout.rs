@@ -1,30 +1,30 @@
-//! Positions and directions of the sonars of the two known ATRV-minis, and the paper's sixteen directions that each
-//! sonar serves.
+//! Positions and directions of the sonars on the two known ATRV-minis, and assignment of these sonars to the paper's
+//! sixteen directions.
 
 use mdle_runtime::{Mount, Radians, SONARS, SonarId};
 
 /// Maximum number of sonars that an ATRV-mini has.
 pub(crate) const MOST: usize = 24;
-/// Radius of the ring on which laws assume the sonars to be, in metres.
+/// Radius, in metres, of the ring on which laws assume the sonars to be.
 pub(crate) const RING_RADIUS: f64 = 0.28;
 
-/// A sonar on the body.
+/// A sonar on the robot's body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transducer {
     /// Id of the sonar: its board times 16, plus its channel.
     pub(crate) id: u8,
-    /// Distance of the sonar forward of the centre, in metres.
+    /// Distance of the sonar ahead of the body's centre, in metres.
     x: f64,
-    /// Distance of the sonar to the left of the centre, in metres.
+    /// Distance of the sonar to the left of the body's centre, in metres.
     y: f64,
     /// Direction of the sonar's axis, in degrees counter-clockwise from the front.
     degrees: f64,
-    /// Directions that the sonar serves: bit `i` for direction `i`.
+    /// Directions for which the sonar is used: bit `i` for direction `i`.
     pub(crate) directions: u16,
 }
 
 /// Sonars of the front left board of a robot with 24 sonars: x and y in millimetres, axis in degrees, and the direction
-/// that each sonar serves.
+/// for which the sonar is used.
 const QUARTER: [(f64, f64, f64, usize); 6] = [
     (258.17, 114.70, 0.0, 0),
     (252.24, 152.17, 18.0, 1),
@@ -34,8 +34,8 @@ const QUARTER: [(f64, f64, f64, usize); 6] = [
     (136.91, 235.97, 90.0, 4),
 ];
 
-/// Sonars of the left board of a robot with 16 sonars: x and y in millimetres, axis in degrees, and the directions that
-/// each sonar serves. Between 90° and 180° there is only one sonar.
+/// Sonars of the left board of a robot with 16 sonars: x and y in millimetres, axis in degrees, and the directions for
+/// which the sonar is used. Between 90° and 180° there is only one sonar.
 const HALF: [(f64, f64, f64, &[usize]); 8] = [
     (258.17, 114.70, 0.0, &[0]),
     (252.24, 152.17, 18.0, &[1]),
@@ -47,7 +47,7 @@ const HALF: [(f64, f64, f64, &[usize]); 8] = [
     (-225.43, 230.03, 90.0, &[4, 5, 6]),
 ];
 
-/// Returns all sonars of a robot with this number of sonars.
+/// Returns all sonars of a robot that has `sonars` sonars.
 pub(crate) fn transducers(sonars: u8) -> [Option<Transducer>; MOST] {
     let mut all = [None; MOST];
     let known = if sonars == 16 { two_boards } else { four_boards };
@@ -57,7 +57,8 @@ pub(crate) fn transducers(sonars: u8) -> [Option<Transducer>; MOST] {
     all
 }
 
-/// Returns a sonar of the robot with four boards of six sonars: front left, rear left, rear right, front right.
+/// Returns the sonar with this index, for a robot with four boards of six sonars: front left, rear left, rear right,
+/// front right.
 fn four_boards(number: usize) -> Option<Transducer> {
     let (x, y, degrees, direction) = *QUARTER.get(number % 6)?;
     let board = number / 6;
@@ -70,7 +71,8 @@ fn four_boards(number: usize) -> Option<Transducer> {
     Some(at(board * 16 + number % 6, (x, y, degrees), &[direction]))
 }
 
-/// Returns a sonar of the robot with two boards of eight sonars; the right board mirrors the left one.
+/// Returns the sonar with this index, for a robot with two boards of eight sonars. The right board mirrors the left
+/// one.
 fn two_boards(number: usize) -> Option<Transducer> {
     let (board, channel) = (number / 8, number % 8);
     // On the right board, the last two channels are swapped.
@@ -97,13 +99,13 @@ fn at(id: usize, (x, y, degrees): (f64, f64, f64), directions: &[usize]) -> Tran
 
 impl Transducer {
     /// Converts a range of this sonar to a range from the ring, in metres. The result is measured along the sonar's
-    /// axis from the point nearest to the centre, and reduced by the ring's radius.
+    /// axis, from the point of the axis that is nearest to the body's centre, and then reduced by the ring's radius.
     pub(crate) fn on_the_ring(&self, range: f64) -> f64 {
         let (sin, cos) = libm::sincos(self.degrees.to_radians());
         (self.x * cos + self.y * sin + range - RING_RADIUS).max(0.0)
     }
 
-    /// Returns the mount of this sonar when it serves `direction`.
+    /// Returns the mount of this sonar when it is used for `direction`.
     pub(crate) fn mount(&self, direction: usize) -> Mount {
         Mount::of(self.x, self.y, Radians::from_degrees(self.degrees), SonarId::new(direction as u8))
     }
@@ -115,7 +117,7 @@ mod tests {
 
     use super::*;
 
-    /// Returns the ids of the sonars that serve each direction.
+    /// Returns the ids of the sonars that are used for each direction.
     fn speakers(sonars: u8) -> Vec<Vec<u8>> {
         let all = transducers(sonars);
         let of = |direction: usize| all.iter().flatten().filter(move |sonar| sonar.directions & (1 << direction) != 0);

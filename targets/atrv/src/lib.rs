@@ -1,7 +1,7 @@
 //! The target for the iRobot ATRV-mini: the protocol of its rFLEX controller, the driver, and the alphabet.
 //!
-//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has.
-//! Tests and tools use the protocol ([`Command`], [`Packet`], [`Report`]) and the driver, [`Atrv`].
+//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], which contains the quarks of this
+//! robot. Tests and tools use the protocol ([`Command`], [`Packet`], [`Report`]) and the driver, [`Atrv`].
 #![forbid(unsafe_code)]
 
 pub mod alphabet;

@@ -8,11 +8,11 @@ use crate::config::Config;
 
 /// Maximum distance between two reported positions, in metres; a larger distance is rejected as a leap.
 const LEAP: f64 = 1.0;
-/// Maximum number by which leaps may exceed normal steps; beyond it, the positions are unusable.
+/// Maximum number by which leaps may exceed normal steps. If they exceed it further, the positions are unusable.
 const LEAPS: u8 = 4;
 
-/// Returns the commands for `input`, translation first. Both speeds are reduced by the same factor, so that no side
-/// exceeds the maximum speed and the robot stays on its curve. An input that is not a number stops the robot.
+/// Returns the commands for `input`; the translation comes first. If a side would exceed its maximum speed, both speeds
+/// are reduced by the same factor, so that the robot stays on its curve. An input that is not a number stops the robot.
 pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
     let side = input.v.0.abs() + input.omega.0.abs() * (config.wheel_base / 2.0);
     let scale = if side.is_finite() { (config.fastest / side).min(1.0) } else { 0.0 };
@@ -35,7 +35,7 @@ pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
     [Command::Move(Axis::Translation, translation), Command::Move(Axis::Rotation, rotation)]
 }
 
-/// Odometry of the robot, computed from the positions of its axes; the first report is the origin.
+/// Odometry of the robot, computed from the positions of its axes. The origin is the position in the first report.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Odometer {
     last: Option<(i32, i32)>,
@@ -76,8 +76,8 @@ pub(crate) fn asked(commands: &[Command; 2], config: &Config) -> [f64; 2] {
     sides(&twist(velocity(along), velocity(round), config), config)
 }
 
-/// Returns the decelerations of the sides, in m/s²: while both move in the same direction, and while they move in
-/// opposite directions.
+/// Returns two decelerations of the sides, in m/s²: the first while both sides move in the same direction, and the
+/// second while they move in opposite directions.
 pub(crate) fn brakes(config: &Config) -> [f64; 2] {
     let turning = f64::from(config.rotation_acceleration) / config.units_per_radian;
     [config.acceleration, turning * (config.wheel_base / 2.0)]

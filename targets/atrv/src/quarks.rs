@@ -1,4 +1,4 @@
-//! Quarks that this robot's alphabet declares itself because their argument ranges differ; their laws are shared with
-//! other robots.
+//! Quarks that this robot's alphabet declares itself, because the ranges of their arguments differ from other robots.
+//! The laws of these quarks are shared with other robots.
 
 pub use mdle_atoms::{Advance, Go, GoAvoid};

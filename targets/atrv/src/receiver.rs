@@ -17,19 +17,20 @@ use crate::ring::Ring;
 const CHUNK: usize = 512;
 /// Maximum delay of an answer, in addition to twice the time between two requests.
 const LATE: Duration = Duration::from_millis(300);
-/// Maximum number of consecutive reads before the number of reports is checked: a robot may send without end.
+/// Maximum number of consecutive reads before the number of reports is checked. The limit is needed because a robot may
+/// send without end.
 const READS: usize = 64;
 
-/// Receiver of the robot's reports, with the robot's state according to the reports.
+/// Receiver of the robot's reports. It stores the state of the robot according to these reports.
 #[derive(Debug)]
 pub(crate) struct Hearing {
     reader: Reader,
     known: ReportedState,
     /// Time of the last position report by this computer's clock; `None` before the first report.
     last_report: Option<Instant>,
-    /// Fault found since the last position report; `None` if no fault was found.
+    /// Fault that was detected since the last position report; `None` if no fault was detected.
     trouble: Option<Fault>,
-    /// Maximum time between two reports of the brake.
+    /// Maximum time between two reports about the brake.
     unanswered: Nanos,
 }
 
@@ -39,8 +40,8 @@ struct ReportedState {
     config: Config,
     odometer: Odometer,
     ring: Ring,
-    /// Position and velocity of the translation, which are reported before those of the rotation; `None` after the
-    /// rotation has been reported.
+    /// Translational position and velocity, which the robot reports before the rotational ones; `None` once the
+    /// rotational ones have been reported.
     along: Option<(i32, i32)>,
     velocity: Twist,
     /// Time of the last position report by the controller's clock; `None` before the first report.
@@ -53,14 +54,14 @@ struct ReportedState {
     felt: [Option<Nanos>; 2],
     /// `true` if the brake is set; `None` before the first report.
     is_braked: Option<bool>,
-    /// Time of the last report of the brake.
+    /// Time of the last report about the brake.
     answered: Nanos,
-    /// Battery voltage at the last report of the brake.
+    /// Voltage of the battery, from the last report about the brake.
     battery: Volts,
 }
 
 impl Hearing {
-    /// Returns the state before the first report of a robot whose brake is requested at most once in `period`.
+    /// Creates the state before the first report. The state of the brake is requested at most once in `period`.
     pub(crate) fn new(config: &Config, period: Duration) -> Self {
         let known = ReportedState {
             config: config.clone(),
@@ -82,7 +83,7 @@ impl Hearing {
     }
 
     /// Reads the reports that have arrived, and waits for `count` position reports. If `count` is 0, waits until the
-    /// last position report is not older than `patience`.
+    /// last position report is at most `patience` old.
     ///
     /// # Errors
     /// Fails if the line is closed, or if the position reports have not arrived within `patience`.
@@ -105,8 +106,8 @@ impl Hearing {
         }
     }
 
-    /// Reads the reports that have arrived, and clears the time and the fault of the last report. The robot's state is
-    /// kept.
+    /// Reads the reports that have arrived, and clears the time and the fault of the last report. Does not clear the
+    /// robot's state.
     ///
     /// # Errors
     /// Fails if the line is closed.
@@ -163,7 +164,8 @@ impl Hearing {
         }
     }
 
-    /// Returns the fault for the first report that the start still waits for; `None` if all reports have arrived.
+    /// Returns the fault for the first report that has to arrive before the start and is still missing; `None` if all
+    /// these reports have arrived.
     pub(crate) fn waits_for(&self) -> Option<Fault> {
         match self.known.is_braked {
             None => Some(Fault::Unheard),
@@ -175,7 +177,7 @@ impl Hearing {
         }
     }
 
-    /// Checks, at the time `at` of an output, that the robot can continue.
+    /// Checks that the robot can continue. `at` is the time of the current output.
     ///
     /// # Errors
     /// Fails if the brake is set, if the positions leap, or if a report is overdue.
@@ -199,7 +201,7 @@ impl Hearing {
         self.known.odometer.pose
     }
 
-    /// Returns the time since the last position report was received, at the exchange time `at`.
+    /// Returns the age of the last position report. `at` is the time of the exchange.
     pub(crate) fn age(&self, at: Nanos) -> Nanos {
         at.since(self.known.positioned)
     }
@@ -219,7 +221,8 @@ impl Hearing {
         &self.known.ring.pings
     }
 
-    /// Returns the battery's voltage and state. The charging state is derived from the voltage only.
+    /// Returns the voltage and the state of the battery. Whether the battery is being charged is derived from the
+    /// voltage alone.
     pub(crate) fn supply(&self) -> Supply {
         let ReportedState { battery, config, .. } = &self.known;
         let is_plugged = battery.0 > config.plugged_above;
@@ -256,7 +259,7 @@ impl Hearing {
 }
 
 impl ReportedState {
-    /// Stores the content of a packet. Returns `true` if the packet completes a position report.
+    /// Processes a packet. Returns `true` if the packet completes a position report.
     fn take(&mut self, packet: &Packet<'_>, at: Nanos) -> Result<bool, Fault> {
         match Report::read(packet).map_err(Fault::Unreadable)? {
             Report::Axis { axis: Axis::Translation, position, velocity, .. } => {
@@ -290,7 +293,7 @@ impl ReportedState {
         Ok(false)
     }
 
-    /// Stores the state of a digital input.
+    /// Stores the state of the digital input at this address.
     fn feel(&mut self, address: u8, state: u16, at: Nanos) {
         match (address.wrapping_sub(self.config.bumper_address), self.config.bumpers) {
             (0, Bumpers::Bits) => (self.switches, self.felt) = (u32::from(state & 0b11), [Some(at); 2]),
@@ -305,7 +308,8 @@ impl ReportedState {
         }
     }
 
-    /// Returns the first bumper whose last report is missing or too old; `None` if there is no such bumper or no limit.
+    /// Returns the first bumper whose last report is missing or too old; `None` if there is no such bumper, or if there
+    /// is no limit.
     fn numb(&self, at: Nanos) -> Option<u8> {
         let limit = Nanos(self.config.inputs.saturating_mul(1_000_000));
         let is_old = |felt: &Option<Nanos>| felt.is_none_or(|felt| at.since(felt) > limit);

@@ -1,4 +1,4 @@
-//! Reports of an rFLEX controller: the positions of its axes, the echoes of its sonars, its bumpers, its brake. See
+//! Reports of an rFLEX controller: positions of the axes, sonar echoes, bumpers, and the brake. See
 //! docs/src/reference/protocols.md, 2.4.
 
 use crate::command::Axis;
@@ -7,7 +7,7 @@ use crate::frame::Packet;
 /// Content of a packet from the robot, in the controller's units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Report<'a> {
-    /// Position of an axis relative to its position at switch-on, and its velocity.
+    /// Position of an axis, relative to its position when the robot was switched on, and its velocity.
     Axis {
         /// Reported axis.
         axis: Axis,
@@ -29,7 +29,7 @@ pub enum Report<'a> {
     },
     /// The battery and the brake.
     Status {
-        /// Voltage of the battery, in hundredths of a volt, less the drop across the electronics.
+        /// Voltage of the battery minus the voltage drop across the electronics, in hundredths of a volt.
         battery: u32,
         /// `true` if the brake holds the robot.
         is_braked: bool,
@@ -41,13 +41,13 @@ pub enum Report<'a> {
 /// Reason why a packet cannot be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unreadable {
-    /// No part of an rFLEX sends a packet with this port and opcode.
+    /// The packet has this port and opcode, but no part of an rFLEX sends such packets.
     Unknown(u8, u8),
-    /// A report with this port and opcode has only this number of data bytes.
+    /// A report with this port and opcode is too short; contains the number of its data bytes.
     Short(u8, u8, usize),
 }
 
-/// Echoes of sonars, in three bytes each.
+/// Echoes of sonars; each consists of three bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Echoes<'a>(&'a [u8]);
 
@@ -79,8 +79,8 @@ impl<'a> Report<'a> {
     }
 }
 
-/// Reads a return value, the time, the axis, its position and its velocity. The remaining bytes repeat the controller's
-/// commands.
+/// Parses a return value, the time, the axis, its position and its velocity. The remaining bytes repeat the
+/// controller's commands.
 fn axis(data: &[u8]) -> Option<Report<'static>> {
     // The report has twenty-five bytes; a shorter one is malformed.
     let [_, _, _, _, t0, t1, t2, t3, axis, p0, p1, p2, p3, v0, v1, v2, v3, _, _, _, _, _, _, _, _, ..] = data else {
@@ -96,7 +96,7 @@ fn axis(data: &[u8]) -> Option<Report<'static>> {
     Some(Report::Axis { axis, position, velocity: i32::from_be_bytes([*v0, *v1, *v2, *v3]), time })
 }
 
-/// Reads the time, the address of an input and its state. Some controllers omit one byte of the state.
+/// Parses the time, the address of an input, and its state. Some controllers omit one byte of the state.
 fn input(data: &[u8]) -> Option<Report<'static>> {
     match data {
         [_, _, _, _, address, high, low] => {
@@ -107,7 +107,7 @@ fn input(data: &[u8]) -> Option<Report<'static>> {
     }
 }
 
-/// Reads the time, the battery's voltage and the state of the brake.
+/// Parses the time, the battery's voltage, and the state of the brake.
 fn status(data: &[u8]) -> Option<Report<'static>> {
     let [_, _, _, _, b0, b1, b2, b3, brake, ..] = data else { return None };
     Some(Report::Status { battery: u32::from_be_bytes([*b0, *b1, *b2, *b3]), is_braked: *brake != 0 })

@@ -6,17 +6,18 @@ use mdle_runtime::{Meters, Mount, Nanos, PINGS_KEPT, Ping, Pings, Pose, SONARS};
 use crate::config::Config;
 use crate::layout::{MOST, Transducer, transducers};
 
-/// Time without a ping after which a direction counts as defective; a sweep of all sonars takes a fifth of this time.
+/// Time without a ping after which a direction is treated as defective. A sweep of all sonars takes a fifth of this
+/// time.
 const DEAF: Nanos = Nanos(1_000_000_000);
 
 /// State of the sonars, and their pings.
 ///
-/// A direction has a new ping when each sonar that serves it has reported since the direction's last ping. It also has
-/// one when a sonar reports for the second time before another sonar has reported, because a report may have been lost.
+/// A direction gets a new ping when all its sonars have reported since its last ping. It also gets one when a sonar
+/// reports for the second time before another sonar has reported, because a report may have been lost.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     transducers: [Option<Transducer>; MOST],
-    /// Last range of each sonar from the ring, in metres; `None` if there was no echo.
+    /// Last range of each sonar, measured from the ring, in metres; `None` if there was no echo.
     ranges: [Option<f64>; MOST],
     pub(crate) pings: [Pings; SONARS],
     /// Sonars that have reported since the last ping of each direction: bit `i` for sonar `i`.
@@ -26,7 +27,7 @@ pub(crate) struct Ring {
 }
 
 impl Ring {
-    /// Returns the state before the first report.
+    /// Creates the state before the first report.
     pub(crate) fn new(config: &Config) -> Self {
         Self {
             transducers: transducers(config.sonars),
@@ -64,13 +65,13 @@ impl Ring {
         }
     }
 
-    /// Returns the lowest direction that has fewer pings than can be stored; `None` if there is no such direction.
+    /// Returns the lowest direction that has fewer pings than an output keeps; `None` if there is no such direction.
     pub(crate) fn unheard(&self) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         all.filter(|(_, pings)| pings.newest_first().count() < PINGS_KEPT).map(|(direction, _)| direction).next()
     }
 
-    /// Returns the lowest direction whose last ping is too old or missing; `None` if there is no such direction.
+    /// Returns the lowest direction whose last ping is missing or too old; `None` if there is no such direction.
     pub(crate) fn deaf(&self, now: Nanos) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         let is_old = |pings: &Pings| pings.newest_first().next().is_none_or(|ping| now.since(ping.at) > DEAF);
@@ -81,14 +82,14 @@ impl Ring {
         self.reported.get(direction).copied().unwrap_or(0)
     }
 
-    /// Returns the sonars that serve this direction: bit `i` for sonar `i`.
+    /// Returns the sonars that are used for this direction: bit `i` for sonar `i`.
     fn members(&self, direction: usize) -> u32 {
         let all = (0..).zip(&self.transducers);
         let speaks = |sonar: &Option<Transducer>| sonar.is_some_and(|sonar| sonar.directions & (1 << direction) != 0);
         all.filter(|(_, sonar)| speaks(sonar)).fold(0, |bits, (number, _): (u32, _)| bits | 1 << number)
     }
 
-    /// Stores a ping of this direction, with the smallest range of its sonars.
+    /// Stores a ping of this direction. The range is the smallest range of the direction's sonars.
     fn ping(&mut self, direction: usize, at: Nanos, pose: Pose) {
         let (Some(reported), Some(pings)) = (self.reported.get_mut(direction), self.pings.get_mut(direction)) else {
             return;

@@ -1,7 +1,7 @@
 //! Sends commands to the robot. A watchdog stops the robot if no motion is commanded for too long.
 //!
-//! The controller stops a robot whose line falls silent, but its timeout is not documented. Therefore a thread of this
-//! program stops the robot earlier; the controller's timeout only matters if the program dies.
+//! The controller stops the robot if the line is silent, but the timeout of this is not documented. Therefore, a thread
+//! of this program stops the robot earlier; the controller's timeout matters only if the program dies.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -15,7 +15,7 @@ use crate::frame::FrameBytes;
 /// Timeout for the line to accept the watchdog's commands.
 const STOPPING: Duration = Duration::from_millis(100);
 
-/// The line to the robot, with a watchdog that supervises the motion commands.
+/// The line for sending to the robot, with a watchdog that supervises the motion commands.
 #[derive(Debug)]
 pub(crate) struct Mouth {
     shared: Arc<SharedLine>,
@@ -36,7 +36,7 @@ struct SharedLine {
 struct Watchdog {
     /// Time of the last motion command; `None` if the watchdog is disarmed.
     last_motion: Option<Moment>,
-    /// `true` if the watchdog has stopped the robot.
+    /// `true` once the watchdog has stopped the robot.
     has_bitten: bool,
     is_over: bool,
 }
@@ -49,8 +49,8 @@ impl SharedLine {
 }
 
 impl Mouth {
-    /// Returns a sender of commands to `line`. With a watchdog (limit and stop commands), the stop commands are sent if
-    /// no motion command follows the last one within the limit.
+    /// Creates a sender of commands to `line`. `watchdog` contains a time limit and stop commands: the stop commands
+    /// are sent if no motion command follows the last one within the limit.
     pub(crate) fn new(line: Line, watchdog: Option<(Duration, [FrameBytes; 2])>) -> Self {
         let watch = Watchdog { last_motion: None, has_bitten: false, is_over: false };
         let limit = watchdog.as_ref().map(|(limit, _)| *limit);
@@ -64,7 +64,7 @@ impl Mouth {
         Self { shared, watching, limit }
     }
 
-    /// Returns the line, from which reports are read.
+    /// Returns the line, so that reports can be read from it.
     pub(crate) fn line(&self) -> &Line {
         &self.shared.line
     }
@@ -90,7 +90,7 @@ impl Mouth {
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
     }
 
-    /// Checks that the watchdog's limit has not been exceeded.
+    /// Checks that the limit of the watchdog has not been exceeded.
     ///
     /// # Errors
     /// Fails if the last motion command is too old, or if the watchdog has stopped the robot.

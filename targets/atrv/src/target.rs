@@ -11,7 +11,7 @@ use crate::config::Config;
 use crate::driver::{Atrv, turn_takes};
 use crate::fault::Fault;
 
-/// Minimum margin between the period and the watchdog's limit, for turns that are late.
+/// Minimum difference between the watchdog's limit and the period. It is needed because turns may be late.
 const SLACK: Duration = Duration::from_millis(50);
 
 impl SerialRobot for Atrv {

@@ -8,19 +8,19 @@ use std::thread;
 use crate::port::Port;
 use crate::serve::{Emulated, Pace, serve};
 
-/// Results of a drive, with the emulated robot after it.
+/// Results of a drive, and the emulated robot after the drive.
 #[derive(Debug)]
 pub struct Driven<R, T> {
     /// Result of the test's function.
     pub result: T,
-    /// Result of serving the line: an error if the robot closed it.
+    /// Result of serving the line; an error if the robot closed the line.
     pub served: io::Result<()>,
     /// Emulated robot after the drive.
     pub robot: R,
 }
 
-/// Guard that sets its flag when dropped, also during a panic; without it, the test would wait forever for the robot's
-/// thread.
+/// Guard that sets its flag when it is dropped, even during a panic. Without it, the test would wait forever for the
+/// robot's thread.
 struct SetAtTheEnd<'f>(&'f AtomicBool);
 
 impl Drop for SetAtTheEnd<'_> {

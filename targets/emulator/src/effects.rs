@@ -1,4 +1,4 @@
-//! A test for every robot on a serial line: runs the robot with each fault, and compares the run with the expected
+//! A test for every robot on a serial line. It runs the robot with each fault, and compares the run with the expected
 //! effects in the robot's table.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,9 +16,9 @@ use crate::trial::{FinishedRun, Trial, WheelMotion, ran, started};
 
 /// World time at which a fault begins, in seconds.
 const BEGINS: u64 = 3;
-/// Maximum time from the first stop order after the fault to the driver's last order.
+/// Maximum time between the first stop order after the fault and the driver's last order.
 const STOPPING: Duration = Duration::from_millis(2500);
-/// Number of simultaneous runs; most of them wait for an answer that never arrives.
+/// Number of simultaneous runs. It can be large, because most runs wait for an answer that never arrives.
 const AT_ONCE: usize = 32;
 
 /// Speed that a driver requests, in turns of 100 ms.
@@ -32,14 +32,14 @@ pub enum Speed {
     Rests,
 }
 
-/// Expected output of a robot that has been driven ahead for five seconds.
+/// Expected output of a robot that has been commanded to drive ahead for five seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Feels {
-    /// The robot has moved a metre straight ahead, and hears the wall in front of it.
+    /// The robot has moved a metre straight ahead, and receives an echo from the wall in front of it.
     Well,
     /// The robot has moved a metre straight ahead, and reports a contact.
     Contact,
-    /// The robot has moved a metre straight ahead, and hears no echo.
+    /// The robot has moved a metre straight ahead, and receives no echo.
     NoEcho,
     /// The robot has turned to the right.
     Turn,
@@ -53,16 +53,16 @@ pub struct Effect {
     turns: u32,
     output: Result<Feels, &'static str>,
     stop: Result<(), &'static str>,
-    /// `true` if the stop may also succeed where a failure is expected.
+    /// `true` if the stop may succeed although a failure is expected.
     may_stop: bool,
     motion: WheelMotion,
     orders: &'static [MotionOrder],
 }
 
 impl Effect {
-    /// Returns the effect of `faults` on a robot that is driven ahead for five seconds, if the driver notices nothing
-    /// and can stop the robot. After the stop, the wheels' motion is `motion`, and the last orders received are
-    /// `orders`.
+    /// Creates the effect of `faults` for a robot that is commanded to drive ahead for five seconds. The driver notices
+    /// nothing, and can stop the robot. After the stop, the motion of the wheels is `motion`, and the last orders that
+    /// the robot received are `orders`.
     #[must_use]
     pub const fn of(faults: &'static [&'static str], motion: WheelMotion, orders: &'static [MotionOrder]) -> Self {
         Self {
@@ -77,7 +77,7 @@ impl Effect {
         }
     }
 
-    /// Sets the speed that the driver requests, and the number of turns of 100 ms.
+    /// Sets the speed that the driver requests, and the number of turns (of 100 ms each).
     #[must_use]
     pub const fn asked(self, speed: Speed, turns: u32) -> Self {
         Self { speed, turns, ..self }
@@ -95,8 +95,8 @@ impl Effect {
         Self { stop: Err(words), ..self }
     }
 
-    /// Accepts a stop that succeeds as well as one that fails: whether the answer to a request is lost depends on the
-    /// time of the request.
+    /// Accepts a stop whether it succeeds or fails, because it depends on the time of a request whether the answer is
+    /// lost.
     #[must_use]
     pub const fn may_stop(self) -> Self {
         Self { may_stop: true, ..self }
@@ -108,7 +108,7 @@ impl Effect {
         Self { output: Ok(Feels::Contact), ..self }
     }
 
-    /// Expects that the sonar at the front hears nothing.
+    /// Expects that the sonar at the front receives no echo.
     #[must_use]
     pub const fn hears_nothing_ahead(self) -> Self {
         Self { output: Ok(Feels::NoEcho), ..self }
@@ -140,8 +140,8 @@ impl Effect {
         [output, stop, motion, self.ordered(&orders)].into_iter().collect()
     }
 
-    /// Compares the last orders with the expected ones, and checks that the driver ceases to send orders within
-    /// [`STOPPING`] of the first stop order.
+    /// Compares the last orders with the expected ones. Also checks that the driver sends its last order within the
+    /// time [`STOPPING`] after the first stop order.
     fn ordered(&self, orders: &[(Duration, MotionOrder)]) -> Result<(), String> {
         let kinds: Vec<MotionOrder> = orders.iter().map(|(_, order)| *order).collect();
         if !kinds.ends_with(self.orders) {
@@ -168,7 +168,7 @@ impl Speed {
 }
 
 impl Feels {
-    /// Compares `y` with the expected output. Returns a sentence that describes the difference.
+    /// Compares `y` with the expected output. The error is a sentence that describes the difference.
     fn check(self, y: &Sensed) -> Result<(), String> {
         let (way, heading) = (y.pose().x.0, y.pose().theta.degrees());
         let echo = y.pings(SonarId::new(0)).newest_first().next().and_then(|ping| ping.range);
@@ -184,7 +184,7 @@ impl Feels {
     }
 }
 
-/// Returns `fault` with the time [`BEGINS`] appended if it has no time.
+/// Returns `fault`. If it has no time, the time [`BEGINS`] is appended.
 fn begun(fault: &str) -> String {
     if fault.contains('@') { fault.to_owned() } else { format!("{fault}@{BEGINS}") }
 }
@@ -198,7 +198,7 @@ fn same<F: std::fmt::Display>(expected: Result<(), &str>, result: Result<(), F>)
     }
 }
 
-/// Runs the robot with the faults of each row of `effects`, and starts a robot with each fault of `refusals`. The
+/// Runs the robot with the faults of each row in `effects`, and starts a robot with each fault in `refusals`. The
 /// driver has to reject each of these starts with a message that contains the given words. Returns a sentence for each
 /// row that differs from its run, for each start that is not rejected in this way, and for each fault of the emulator
 /// that has no row.
@@ -227,8 +227,8 @@ pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &
     untrue.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns a sentence for each fault that the robot can have and that has no row. Late frames are not checked: they
-/// need a clock, which robots in lockstep do not have.
+/// Returns a sentence for each fault that the robot can have but that has no row. Late frames are not checked, because
+/// they need a clock, and robots in lockstep have none.
 fn missing<T: Trial>(effects: &[Effect]) -> Vec<String> {
     let faults =
         effects.iter().flat_map(|effect| effect.faults).filter_map(|fault| fault.parse::<ScheduledFault>().ok());

@@ -1,5 +1,5 @@
-//! Faults that a user can request for an emulated robot: faults of its line, which do not depend on the robot's
-//! protocol, and faults of its body.
+//! Faults that a user can request for an emulated robot. Faults of the line do not depend on the robot's protocol; the
+//! others are faults of the robot's body.
 
 use std::fmt;
 use std::mem::discriminant;
@@ -10,7 +10,7 @@ use mdle_host::Quantity;
 
 /// The latest time at which a fault can begin.
 const LATEST: Duration = Duration::from_secs(1_000_000);
-/// Maximum value of a fault's number (bytes of noise, or milliseconds of delay).
+/// Maximum value of a fault's number, which is a number of noise bytes or of milliseconds.
 const MOST: u32 = 60_000;
 
 /// A fault of the line or of the robot's body.
@@ -28,7 +28,7 @@ pub enum Fault {
     Double,
     /// Each frame arrives late by this number of milliseconds.
     Late(u32),
-    /// No frame arrives: the line from the robot is cut.
+    /// No frame arrives, because the line from the robot is cut.
     Silence,
     /// The line is closed.
     Close,
@@ -39,13 +39,13 @@ pub enum Fault {
 /// A fault of the robot's body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ailment {
-    /// The robot receives nothing: the line to it is cut.
+    /// The robot receives nothing, because the line to it is cut.
     Deaf,
     /// The robot keeps its speed: it ignores all commands, and its watchdog does not stop it.
     Runaway,
     /// The right wheels do not move.
     StuckWheel,
-    /// The sonar at the front hears nothing.
+    /// The sonar at the front receives no echo.
     DeadSonar,
     /// The first bumper is in contact.
     Bumper,
@@ -63,9 +63,9 @@ pub enum Ailment {
     NoPings,
     /// The robot no longer reports its bumpers.
     NoBumpers,
-    /// The robot no longer reports its driven distance.
+    /// The robot no longer reports the distance that it has driven.
     NoTranslation,
-    /// The robot no longer reports its turned angle.
+    /// The robot no longer reports the angle by which it has turned.
     NoRotation,
     /// The robot no longer answers requests about its brake and battery.
     NoStatus,
@@ -73,7 +73,7 @@ pub enum Ailment {
     Leap,
 }
 
-/// Name of each fault in the option `--fault`, with its default number if it takes a number.
+/// Name of each fault in the option `--fault`. A fault with a number has its default number here.
 const KINDS: [(&str, Fault); 24] = [
     ("noise", Fault::Noise(3)),
     ("dribble", Fault::Dribble),
@@ -101,24 +101,24 @@ const KINDS: [(&str, Fault); 24] = [
     ("leap", Fault::Body(Ailment::Leap)),
 ];
 
-/// A fault with the time at which it begins.
+/// A fault, with the time at which it begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ScheduledFault {
     /// Fault that begins at `time`.
     pub fault: Fault,
-    /// World time at which the fault begins, counted from when the robot was switched on.
+    /// World time at which the fault begins, counted from the time when the robot was switched on.
     pub time: Duration,
 }
 
 impl Fault {
-    /// Returns the faults of all robots, with their default numbers.
+    /// Returns one fault of each kind, for all robots, with the default number of noise bytes or milliseconds of delay.
     #[cfg(feature = "trial")]
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         KINDS.into_iter().map(|(_, fault)| fault)
     }
 
-    /// Returns the fault with the number in `text` in place of its default number; `None` if faults of this kind have
-    /// no number, or if `text` is not a valid number.
+    /// Returns the fault with the number in `text`, which replaces the default number; `None` if faults of this kind
+    /// have no number, or if `text` is not a valid number.
     fn numbered(self, text: &str) -> Option<Self> {
         match self {
             Self::Noise(_) => text.parse().ok().filter(|number| *number <= MOST).map(Self::Noise),
@@ -130,7 +130,7 @@ impl Fault {
     }
 }
 
-/// Parses a whole number of milliseconds up to [`MOST`], with or without a unit; `None` if `text` is invalid.
+/// Parses a whole number of milliseconds up to [`MOST`]; the unit may be missing. Returns `None` if `text` is invalid.
 fn milliseconds(text: &str) -> Option<u32> {
     let most = Duration::from_millis(u64::from(MOST));
     let time = Quantity::duration(text, "ms", Duration::ZERO, most).ok()?;

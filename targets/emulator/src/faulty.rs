@@ -8,10 +8,10 @@ use mdle_simulator::Footprint;
 use crate::fault::{Ailment, Fault, ScheduledFault};
 use crate::serve::{Embodied, Emulated};
 
-/// Noise bytes of an unshielded line, repeated as often as needed.
+/// Noise bytes, as on an unshielded line. They are repeated as often as needed.
 const NOISE: [u8; 3] = [0xFF, 0x00, 0xA5];
 
-/// An emulated robot with faults.
+/// An emulated robot, with faults of the line and of the body.
 #[allow(missing_debug_implementations, reason = "a robot need not have one")]
 pub struct Faulty<R> {
     robot: R,
@@ -22,12 +22,13 @@ pub struct Faulty<R> {
     age: Duration,
     /// Number of frames that the robot has sent.
     count: u32,
-    /// Fragments of delayed frames, each with its arrival time, counted from when the robot was switched on.
+    /// Fragments of delayed frames, each with its arrival time, which is counted from the time when the robot was
+    /// switched on.
     late: VecDeque<(Duration, Vec<u8>)>,
 }
 
 impl<R: Emulated> Faulty<R> {
-    /// Returns a robot that has just been switched on and develops `faults` at their times.
+    /// Creates a robot that has just been switched on. Each of `faults` begins at its time.
     ///
     /// # Errors
     /// Fails if this kind of robot cannot have one of the faults.
@@ -48,13 +49,13 @@ impl<R: Emulated> Faulty<R> {
         Ok(faulty)
     }
 
-    /// Returns the wrapped robot.
+    /// Returns the robot without the faults of its line.
     #[must_use]
     pub fn robot(&self) -> &R {
         &self.robot
     }
 
-    /// Returns the wrapped robot, without the faults of its line.
+    /// Converts to the robot without the faults of its line.
     #[must_use]
     pub fn into_robot(self) -> R {
         self.robot
@@ -85,7 +86,7 @@ impl<R: Emulated> Faulty<R> {
         }
     }
 
-    /// Returns the fragments in which `frame` arrives over the faulty line.
+    /// Returns the fragments of `frame` that arrive over the faulty line.
     fn sent(&mut self, mut frame: Vec<u8>) -> Vec<Vec<u8>> {
         self.count = self.count.wrapping_add(1);
         if self.has(Fault::Silence) || self.has(Fault::Lose) && !self.count.is_multiple_of(3) {

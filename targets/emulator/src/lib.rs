@@ -1,4 +1,4 @@
-//! Shared code of all robot emulators: pseudo-terminals, the advance of time, and the main programs.
+//! Code that all robot emulators share: pseudo-terminals, the advance of time, and the main program.
 #![forbid(unsafe_code)]
 
 mod driven;

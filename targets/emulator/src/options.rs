@@ -23,13 +23,13 @@ pub struct EmulatorOptions {
 }
 
 impl EmulatorOptions {
-    /// Returns `command` with the options of all robot emulators, and their version.
+    /// Adds the options of all robot emulators, and their version, to `command`.
     #[must_use]
     pub fn arguments(command: Command) -> Command {
         of_behavior(of_robots(command.version(env!("CARGO_PKG_VERSION"))))
     }
 
-    /// Returns the options in `matches`, which a command with [`EmulatorOptions::arguments`] has parsed.
+    /// Reads the options from `matches`, which a command with [`EmulatorOptions::arguments`] has parsed.
     #[must_use]
     pub fn of(matches: &ArgMatches) -> Self {
         Self {
@@ -48,7 +48,7 @@ fn option(name: &'static str, value: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value)
 }
 
-/// Returns `command` with the options about the world and its robots.
+/// Adds the options about the world and its robots to `command`.
 fn of_robots(command: Command) -> Command {
     command
         .arg(
@@ -82,7 +82,7 @@ fn of_robots(command: Command) -> Command {
         )
 }
 
-/// Returns `command` with the options about lines, time and faults.
+/// Adds the options about lines, time and faults to `command`.
 fn of_behavior(command: Command) -> Command {
     command
         .arg(option("link", "PATH").help("Path for a symbolic link to the device").value_parser(value_parser!(PathBuf)))
@@ -119,12 +119,12 @@ fn of_behavior(command: Command) -> Command {
         )
 }
 
-/// Parses the period of `--lockstep`, by which the world advances with each command.
+/// Parses the period of `--lockstep`. The world advances by this period with each command.
 fn step_of_lockstep(text: &str) -> Result<Duration, String> {
     Quantity::duration(text, "ms", Duration::from_millis(1), Duration::from_secs(10))
 }
 
-/// A robot's name and its start pose.
+/// Name of a robot, and its start pose.
 #[derive(Debug, Clone)]
 pub(crate) struct NamedStart(pub(crate) String, pub(crate) Start);
 

@@ -1,4 +1,4 @@
-//! Motion commands that an emulated robot has received, for tests to check after a run.
+//! Motion commands that an emulated robot has received. Tests check them after a run.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -9,7 +9,7 @@ const KEPT: usize = 64;
 /// Kind of a motion command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MotionOrder {
-    /// The command moves the robot.
+    /// The command makes the robot move.
     Drive,
     /// The command stops the robot.
     Stand,
@@ -19,12 +19,12 @@ pub enum MotionOrder {
     Brake,
 }
 
-/// The last 64 orders that the robot has received, oldest first, each with the world time at which it arrived.
+/// The last 64 orders that the robot has received, oldest first. Each has the world time at which it arrived.
 #[derive(Debug, Clone, Default)]
 pub struct OrderLog(VecDeque<(Duration, MotionOrder)>);
 
 impl OrderLog {
-    /// Stores an order that has arrived at the world time `age`.
+    /// Stores an order; `age` is the world time at which it arrived.
     pub fn push(&mut self, age: Duration, order: MotionOrder) {
         if self.0.len() >= KEPT {
             self.0.pop_front();

@@ -16,7 +16,7 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 #[derive(Debug)]
 pub struct Port {
     ours: OwnedFd,
-    /// The driver's end, kept open so that the line persists when a driver closes it.
+    /// The driver's end. It is kept open so that the line persists when a driver closes it.
     _theirs: fs::File,
     path: PathBuf,
     link: Option<PathBuf>,
@@ -46,8 +46,8 @@ impl Port {
         Ok(Self { ours, _theirs: theirs, path, link: None })
     }
 
-    /// Creates a symbolic link to the device at `link`, replacing an existing symbolic link. The link is removed when
-    /// the line is dropped.
+    /// Creates a symbolic link at `link` that leads to the device. Replaces an existing symbolic link. The link is
+    /// removed when the line is dropped.
     ///
     /// # Errors
     /// Fails if `link` exists and is not a symbolic link, or if the link cannot be created.
@@ -71,7 +71,7 @@ impl Port {
         &self.ours
     }
 
-    /// Waits at most `limit` for bytes, and passes them to `take`; returns `true` if bytes arrived.
+    /// Waits for bytes, at most for the time `limit`, and passes them to `take`. Returns `true` if bytes have arrived.
     ///
     /// # Errors
     /// Fails if the line failed.
@@ -91,7 +91,7 @@ impl Port {
         Ok(true)
     }
 
-    /// Sends `bytes`. If no driver reads them, bytes are lost once the line is full, as on a real serial line.
+    /// Sends `bytes`. If no driver reads them, bytes are lost when the line is full, as on a real serial line.
     ///
     /// # Errors
     /// Fails if the line failed.

@@ -1,5 +1,5 @@
-//! Detects to which lines a driver is connected, using the system's notifications (inotify) that a device was opened or
-//! closed.
+//! Detects which lines have a connected driver. For this purpose, it uses the system's notifications (inotify) that a
+//! device was opened or closed.
 
 use std::mem::MaybeUninit;
 use std::os::fd::OwnedFd;
@@ -9,7 +9,7 @@ use std::{io, iter};
 use rustix::fs::inotify::{self, CreateFlags, ReadFlags, Reader, WatchFlags};
 use rustix::io::Errno;
 
-/// Connection state of the drivers at all lines, in the order of the lines.
+/// State of all lines, in order: whether a driver is connected to them.
 #[derive(Debug)]
 pub(crate) struct Presence {
     watch: OwnedFd,
@@ -21,14 +21,14 @@ pub(crate) struct Presence {
 struct Observation {
     /// Number that identifies the line in the system's notifications.
     number: i32,
-    /// Number of programs that have the line open.
+    /// Number of programs that have opened the line and not closed it.
     users: u32,
     /// `true` if a program has ever opened the line.
     has_begun: bool,
 }
 
 impl Presence {
-    /// Begins to watch for drivers at `devices`.
+    /// Starts to watch the lines `devices` for drivers.
     ///
     /// # Errors
     /// Fails if the system cannot watch this number of devices.
@@ -71,7 +71,7 @@ impl Presence {
         Ok(())
     }
 
-    /// Returns `true` if every line has had a connected driver.
+    /// Returns `true` if a driver has been connected to every line at least once.
     pub(crate) fn all_have_begun(&self) -> bool {
         self.lines.iter().all(|line| line.has_begun)
     }

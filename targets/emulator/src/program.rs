@@ -1,4 +1,4 @@
-//! Main program of a robot emulator: creates the world and the lines, and serves them until a signal arrives.
+//! Main program of a robot emulator. It creates the world and the lines, and serves the lines until a signal arrives.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,8 +20,8 @@ use crate::several::{Seat, Several};
 /// Maximum size of a world file, in bytes.
 const LARGEST: u64 = 64_000_000;
 
-/// Runs the robots that `made` creates from their bodies, until a signal arrives. `name` is the robot type in messages,
-/// such as `the Scout`; `step` returns the time step of a body at a pace.
+/// Runs robots until a signal arrives; `made` creates each robot from its body. `name` is the robot type in messages,
+/// such as `the Scout`. `step` returns the time step of a body at a pace.
 pub fn program<R: Emulated + Embodied>(
     name: &str,
     body: Body,
@@ -74,8 +74,8 @@ fn run<R: Emulated + Embodied>(
     line.map_err(|error| format!("the line failed: {error}"))
 }
 
-/// Returns the bodies that the options define, each with its name if it has one. Each body detects the others by their
-/// footprints.
+/// Returns the bodies that the options define, with their names (`None` for a robot without a name). Each body detects
+/// the other bodies by their footprints.
 fn bodies(
     options: &EmulatorOptions,
     world: &World,
@@ -107,7 +107,7 @@ fn bodies(
     Ok(bodies)
 }
 
-/// Returns an error if another robot has this name, or if its body overlaps this body.
+/// Returns an error if another robot has the same name, or if another robot's body overlaps this body.
 fn refuse(name: &str, body: &Simulated, others: &[(Option<String>, Simulated)]) -> Result<(), String> {
     for (other, known) in others {
         if other.as_deref() == Some(name) {
@@ -121,7 +121,7 @@ fn refuse(name: &str, body: &Simulated, others: &[(Option<String>, Simulated)]) 
     Ok(())
 }
 
-/// Returns a flag that is set when a signal asks this program to end.
+/// Returns a flag that is set when a signal requests the end of this program.
 fn over() -> std::io::Result<Arc<AtomicBool>> {
     let over = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {

@@ -1,4 +1,4 @@
-//! Serves an emulated robot at its line: executes requests, sends answers, and advances the world.
+//! Serves an emulated robot at its line. It executes requests, sends answers, and advances the world.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -8,18 +8,18 @@ use mdle_simulator::Footprint;
 use crate::fault::Ailment;
 use crate::port::Port;
 
-/// Time step of the world in real time.
+/// Time by which the emulated world advances in one step, and interval between two steps in real time.
 pub const STEP: Duration = Duration::from_millis(10);
-/// Interval at which a request to stop is checked.
+/// Interval at which the emulator checks whether it has been asked to stop.
 pub(crate) const SLICE: Duration = Duration::from_millis(5);
 
-/// An emulated robot: its protocol and its body.
+/// An emulated robot, which consists of its protocol and its body.
 pub trait Emulated {
     /// Receives bytes from the line.
     fn push(&mut self, bytes: &[u8]);
 
-    /// Executes the next complete request; returns `None` if no request is complete. If it returns `true`, a lockstep
-    /// period passes before the answer is sent.
+    /// Executes the next complete request. Returns `None` if no request is complete. If the result is `true`, a
+    /// lockstep period passes before the answer is sent.
     fn obey(&mut self) -> Option<bool>;
 
     /// Advances the robot's world by `time`.
@@ -28,36 +28,36 @@ pub trait Emulated {
     /// Fails if the simulated world rejects the input, which does not occur here.
     fn pass(&mut self, time: Duration) -> Result<(), String>;
 
-    /// Returns the frames that the robot sends since the last call.
+    /// Removes and returns the frames that the robot has sent since the last call.
     fn take_frames(&mut self) -> Vec<Vec<u8>>;
 
-    /// Returns `true` if this kind of robot can have `ailment`.
+    /// Returns `true` if this kind of robot can have the fault `ailment`.
     fn can_suffer(ailment: Ailment) -> bool;
 
-    /// Begins the fault `ailment` of the body.
+    /// Begins the fault `ailment` of the robot's body.
     fn suffer(&mut self, ailment: Ailment);
 }
 
-/// A robot that other robots in its world can hear and touch.
+/// A robot that other robots in its world can detect and touch.
 pub trait Embodied {
     /// Returns the area that the robot's body covers.
     fn footprint(&self) -> Footprint;
 
-    /// Sets the places of the other robots.
+    /// Sets the footprints of the other robots.
     fn see(&mut self, others: &[Footprint]);
 }
 
 /// Pace at which the world advances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pace {
-    /// The world advances by this step with each command, independently of the clock.
+    /// The world advances by this step with each command, independent of the clock.
     Lockstep(Duration),
-    /// The world advances by the clock, in steps of [`STEP`].
+    /// The world advances in real time, in steps of [`STEP`].
     Real,
 }
 
 impl Pace {
-    /// Returns the time step of the robot's body.
+    /// Returns the time step of the robot's body at this pace.
     #[must_use]
     pub const fn step(self) -> Duration {
         match self {
@@ -67,8 +67,8 @@ impl Pace {
     }
 }
 
-/// Serves the robot at this line while `goes_on` returns `true`, and then until it has executed the commands received
-/// before.
+/// Serves the robot at this line while `goes_on` returns `true`. Afterwards, executes the commands that have already
+/// been received.
 ///
 /// # Errors
 /// Fails if the line or the robot's world failed.

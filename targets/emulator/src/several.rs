@@ -1,9 +1,9 @@
-//! Several robots in one world, each at its own line: the robots hear and touch each other.
+//! Several robots in one world, each at its own line. The robots can detect and touch each other.
 //!
-//! In lockstep the world advances by a step when each robot with a connected driver has received its command for that
+//! In lockstep, the world advances by a step when each robot with a connected driver has received its command for that
 //! step. The first step waits until a driver has connected to each robot. A robot whose driver has disconnected no
-//! longer blocks the others, and its own watchdog stops it. In each step the robots move one after another, in their
-//! order.
+//! longer blocks the others, and its own watchdog stops it. In each step, the robots move one after another, in the
+//! order of the list.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -21,7 +21,7 @@ use crate::serve::{self, Embodied, Emulated, Pace, SLICE, STEP, say};
 pub struct Seat<R> {
     /// Emulated robot.
     pub robot: R,
-    /// Line of the robot.
+    /// Serial line of the robot.
     pub port: Port,
 }
 
@@ -33,7 +33,7 @@ pub struct Several<R> {
 }
 
 impl<R> Several<R> {
-    /// Creates the group of robots, and begins to watch for drivers at their lines.
+    /// Creates the group of robots, and starts to watch their lines for drivers.
     ///
     /// # Errors
     /// Fails if the system cannot watch this number of lines.
@@ -50,8 +50,8 @@ impl<R> Several<R> {
 }
 
 impl<R: Emulated + Embodied> Several<R> {
-    /// Serves all robots while `goes_on` returns `true`, and then until they have executed the commands received
-    /// before.
+    /// Serves all robots while `goes_on` returns `true`. Afterwards, executes the commands that have already been
+    /// received.
     ///
     /// # Errors
     /// Fails if a line or the world of a robot failed.
@@ -122,7 +122,7 @@ fn wait<R>(seats: &[Seat<R>], presence: &Presence, limit: Duration) -> io::Resul
     }
 }
 
-/// Executes the requests of a robot up to its command for the next step, which sets `has_command`.
+/// Executes the requests of a robot, up to its command for the next step. This command sets `has_command` to `true`.
 fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, has_command: &mut bool) -> io::Result<()> {
     while !*has_command {
         match seat.robot.obey() {
@@ -142,7 +142,7 @@ fn is_due(presence: &Presence, have_commands: &[bool]) -> bool {
     presence.all_have_begun() && nobody_is_waited_for && have_commands.contains(&true)
 }
 
-/// Advances the world by one step; each robot detects the other robots at their current places.
+/// Advances the world by one step. Each robot detects the other robots at their current positions.
 fn pass<R: Emulated + Embodied>(seats: &mut [Seat<R>], step: Duration) -> io::Result<()> {
     let mut footprints: Vec<Footprint> = seats.iter().map(|seat| seat.robot.footprint()).collect();
     for (number, Seat { robot, port }) in seats.iter_mut().enumerate() {

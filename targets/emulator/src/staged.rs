@@ -11,7 +11,7 @@ use crate::fault::Ailment;
 use crate::port::Port;
 use crate::serve::{Emulated, Pace, serve};
 
-/// An emulated robot at its line. Dropping this switches the robot off.
+/// An emulated robot at its line. Dropping this value switches the robot off.
 #[derive(Debug)]
 pub struct Staged<T> {
     device: PathBuf,
@@ -19,18 +19,18 @@ pub struct Staged<T> {
     serving: Option<JoinHandle<io::Result<()>>>,
 }
 
-/// State of a robot that a test observes, and the test's requests.
+/// State of a robot that a test can observe, and the requests of the test.
 #[derive(Debug)]
 struct SharedState<T> {
     now: Mutex<T>,
-    /// Number of periods that are still to pass without a command.
+    /// Number of periods that still have to pass without a command.
     idle: AtomicU32,
     /// Body fault that begins at the end of the period; `None` if no fault is requested.
     ailment: Mutex<Option<Ailment>>,
     is_over: AtomicBool,
 }
 
-/// The robot, with the state that it shares with the test.
+/// The robot, and the state that it shares with the test.
 struct WatchedRobot<R, T> {
     robot: R,
     look: fn(&R) -> T,
@@ -39,8 +39,8 @@ struct WatchedRobot<R, T> {
 }
 
 impl<T: Clone + Send + 'static> Staged<T> {
-    /// Switches on a robot whose world advances by `period` with each command; `look` returns the state that a test
-    /// observes.
+    /// Switches on a robot whose world advances by `period` with each command. `look` returns the state that a test can
+    /// observe.
     ///
     /// # Errors
     /// Fails if the system has no more pseudo-terminals.
@@ -79,7 +79,7 @@ impl<T: Clone + Send + 'static> Staged<T> {
         *self.seen.ailment.lock().unwrap_or_else(PoisonError::into_inner) = Some(ailment);
     }
 
-    /// Lets `periods` periods pass without a command to the robot, and waits until they have passed.
+    /// Lets `periods` periods pass in which the robot receives no command, and waits until they have passed.
     pub fn left_alone(&self, periods: u32) {
         self.seen.idle.store(periods, Ordering::Release);
         while self.seen.idle.load(Ordering::Acquire) > 0 && self.serving.as_ref().is_some_and(|it| !it.is_finished()) {

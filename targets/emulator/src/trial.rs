@@ -1,4 +1,5 @@
-//! Shared code of the tests that every driver of a robot on a serial line has to pass with its emulated robot.
+//! Code that the tests of all drivers share. Every driver of a robot on a serial line has to pass these tests with its
+//! emulated robot.
 
 use std::marker::PhantomData;
 use std::path::Path;
@@ -17,12 +18,13 @@ use crate::orders::OrderLog;
 use crate::serve::{Emulated, Pace};
 use crate::staged::Staged;
 
-/// Timeout of the driver when every answer arrives, in milliseconds: longer than any machine needs.
+/// Timeout of the driver, in milliseconds, for runs in which every answer arrives. It is longer than any computer
+/// needs.
 const LONG: u64 = 60_000;
-/// Timeout of the driver when some answers do not arrive, in milliseconds.
+/// Timeout of the driver, in milliseconds, for runs in which some answers do not arrive.
 const PATIENCE: u64 = 3000;
 
-/// World with a wall 4 m in front of the robot, and other walls far away.
+/// World with one wall 4 m in front of the robot; all other walls are at least 3 m away.
 const HALL: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-3, 3], [-3, -3], [4, -3]]";
 
@@ -53,7 +55,7 @@ pub trait Trial {
         pace.step()
     }
 
-    /// Returns a robot that has just been switched on, whose world advances in steps of `step`.
+    /// Creates a robot that has just been switched on and whose world advances in steps of `step`.
     ///
     /// # Errors
     /// Fails if the simulated world rejects the input, which does not occur here.
@@ -74,7 +76,7 @@ fn period<T: Trial>() -> Duration {
     Duration::from_nanos(T::Driver::PERIOD.0)
 }
 
-/// Returns a robot that has just been switched on at the pose `at` in `world`.
+/// Creates a robot that has just been switched on at the pose `at` in `world`.
 fn switched_on<T: Trial>(world: &World, at: Pose, seed: Option<u64>) -> Result<T::Emulated, String> {
     let step = T::step(Pace::Lockstep(period::<T>()));
     let make = Make { body: T::BODY, without: Vec::new(), seed };
@@ -92,8 +94,8 @@ fn connected<T: Trial>(device: &Path, answer: u64) -> Result<Result<T::Driver, F
 /// Fault type of the driver of `T`.
 type FaultOf<T> = <<T as Trial>::Driver as Robot>::Error;
 
-/// Stage of the conformance suite: connects the driver to the robot that is currently switched on. The robot's sensors
-/// are exact, and its wheels do not slip.
+/// Test stage for the conformance suite. It connects the driver to the robot that is currently switched on. The robot's
+/// sensors are exact, and its wheels do not slip.
 #[derive(Debug)]
 pub struct OnItsLine<T>(Option<Staged<Pose>>, PhantomData<T>);
 
@@ -139,8 +141,9 @@ impl<T: Trial> Stage for OnItsLine<T> {
     }
 }
 
-/// Returns the number of allocations of the driver in fifty turns; `asked` returns the number so far on this thread. In
-/// fifty turns each sonar pings, and everything that the driver does only in some turns occurs.
+/// Returns the number of memory allocations that the driver makes in fifty turns; `asked` returns the number of
+/// allocations on this thread so far. In fifty turns, each sonar pings, and the driver also does everything that it
+/// does only in some turns.
 ///
 /// # Errors
 /// Fails if the robot or its driver failed.
@@ -161,7 +164,7 @@ pub fn memory_asked_for<T: Trial>(asked: fn() -> u64) -> Result<u64, String> {
     result
 }
 
-/// A finished run of a robot with faults in front of a wall.
+/// A finished run of a robot with faults, which was in front of a wall.
 pub(crate) struct FinishedRun<T: Trial> {
     /// Last output, or the fault that ended the run.
     pub(crate) output: Result<Sensed, FaultOf<T>>,
@@ -171,11 +174,12 @@ pub(crate) struct FinishedRun<T: Trial> {
     pub(crate) robot: T::Emulated,
 }
 
-/// Runs a driver that requests `speed`, in m/s, for `turns` turns, and then stops the robot, as the host always does.
+/// Runs a driver that requests the speed `speed`, in m/s, for `turns` turns. Then stops the robot, as the host always
+/// does.
 ///
 /// # Errors
-/// Fails if a fault is unknown, if the driver cannot connect, if the line closes without a fault that closes it, or if
-/// it stays open despite such a fault.
+/// Fails if a fault is unknown, if the driver cannot connect, if the line closes although no fault closes it, or if it
+/// stays open although a fault should close it.
 pub(crate) fn ran<T: Trial>(
     turns: u32,
     faults: &[&str],
@@ -208,7 +212,7 @@ pub(crate) fn started<T: Trial>(fault: &str) -> Result<Result<(), FaultOf<T>>, S
     result.map(|driver| driver.map(drop))
 }
 
-/// Returns a robot with these faults in front of the wall of [`HALL`].
+/// Creates a robot with these faults, in front of the wall of [`HALL`].
 fn faulty<T: Trial>(faults: &[&str]) -> Result<Faulty<T::Emulated>, String> {
     let world = World::parse("hall", HALL).map_err(|error| error.to_string())?;
     let faults: Vec<ScheduledFault> = faults.iter().map(|fault| fault.parse()).collect::<Result<_, _>>()?;

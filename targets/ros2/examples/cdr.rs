@@ -55,7 +55,7 @@ fn digits<T: Serialize>(message: &T) -> String {
     Payload::of(message).unwrap().bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Writes the nodes of a program with the ids of Humble, a format that the driver does not read.
+/// Encodes the nodes of a program with the ids of Humble. The driver does not read this format.
 fn written_with_long_ids(_: &str, text: &str) -> String {
     let mut info: m::ParticipantEntitiesInfo = serde_json::from_str(text).unwrap();
     info.gid.is_long = true;

@@ -1,6 +1,7 @@
-//! An empty control loop on the driver, without plan and host, whose latency `tests/latency.py` compares.
+//! An empty control loop on the driver, without a plan and a host. `tests/latency.py` compares its latency with other
+//! loops.
 //!
-//! Usage: `empty_loop CONFIG.toml PERIOD_MS`. The robot drives backwards while sonar 0 hears an object within 60 cm.
+//! Usage: `empty_loop CONFIG.toml PERIOD_MS`. The robot drives backwards while sonar 0 detects an object within 60 cm.
 #![allow(clippy::unwrap_used, reason = "a program of the tests, which fails loudly")]
 
 use std::path::Path;

@@ -8,11 +8,12 @@ use crate::messages::BatteryState;
 const CHARGING: u8 = 1;
 const FULL: u8 = 4;
 
-/// Maximum valid charge: batteries report a little more than 1 when they are full. Percentages, which some robots
-/// wrongly report, are rejected.
+/// Maximum valid charge, because full batteries report a little more than 1. Percentages, which some robots report by
+/// mistake, are rejected.
 const MOST: f64 = 1.5;
 
-/// Returns the power supply that `message` reports. The battery is low if its charge (1 is full) is below `low`.
+/// Returns the power supply that `message` reports. The battery is low if its charge is below `low`, where 1 means
+/// full.
 ///
 /// # Errors
 /// Returns the reason, as the end of a sentence about the message, if the charge is not a number from 0 to 1.5.

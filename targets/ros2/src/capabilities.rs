@@ -1,15 +1,15 @@
-//! Capabilities that the configuration gives a robot, and the check that a plan needs no missing capability.
+//! Capabilities that a robot has because of its configuration, and the check that a plan needs no missing capability.
 
 use std::fmt;
 
 use crate::choices::BumperSource;
 use crate::config::Config;
 
-/// Alphabet files that declare this robot's quarks: its own and the shared one.
+/// Alphabet files that declare this robot's quarks: its own alphabet and the shared one.
 const DECLARATIONS: [&str; 2] = [include_str!("../alphabet.mdle"), include_str!("../../../atoms/alphabet.mdle")];
 
-/// Optional capabilities: the name, `true` if the configuration provides the capability, and the configuration keys
-/// that would provide it.
+/// Optional capabilities. Each entry contains the name, `true` if the configuration provides the capability, and the
+/// configuration keys that would provide it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Capabilities {
     optional: [(&'static str, bool, &'static str); 3],
@@ -48,7 +48,7 @@ impl Capabilities {
     }
 }
 
-/// Prints, as TOML comments that follow the configuration, the capabilities that the robot has and those that it lacks.
+/// Prints the capabilities that the robot has and those that it lacks, as TOML comments that follow the configuration.
 impl fmt::Display for Capabilities {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let given = self.optional.iter().filter(|(_, is_there, _)| *is_there).map(|(name, _, _)| *name);

@@ -1,4 +1,5 @@
-//! Encodes and decodes messages in Common Data Representation, as ROS 2 sends them over DDS (XCDR1, either byte order).
+//! Encodes and decodes messages in Common Data Representation, the format in which ROS 2 sends them over DDS (XCDR1,
+//! either byte order).
 
 use rustdds::RepresentationIdentifier;
 use rustdds::serialization::{deserialize_from_cdr_with_rep_id, to_writer_with_rep_id};

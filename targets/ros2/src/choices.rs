@@ -1,4 +1,4 @@
-//! Configuration values that are one of a few words, and the mounting of range sensors on the body.
+//! Configuration values that are selected by one of a few words, and the mounting of range sensors on the body.
 
 use std::fmt;
 
@@ -19,7 +19,8 @@ pub enum Distribution {
 /// Type of the velocity command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stamped {
-    /// The type to which a program on the graph subscribes; without a time stamp if programs subscribe to both types.
+    /// The type to which a program on the graph subscribes. If programs subscribe to both types, the type without a
+    /// time stamp.
     Auto,
     /// The type `geometry_msgs/msg/TwistStamped`.
     Yes,
@@ -36,11 +37,11 @@ pub enum BumperSource {
     Bool,
     /// A topic of type `irobot_create_msgs/msg/HazardDetectionVector`.
     Hazard,
-    /// The laser scan: an obstacle within the margin around the body presses a switch.
+    /// The laser scan. An obstacle within the margin around the body activates a switch.
     Scan,
 }
 
-/// Implements [`Setting`] for enumerations; each variant is selected by a word in the configuration.
+/// Implements [`Setting`] for enumerations; a word in the configuration selects each variant.
 macro_rules! words {
     ($($type:ident: $($word:literal $variant:ident),*;)*) => {
         $(impl Setting for $type {

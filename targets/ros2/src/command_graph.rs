@@ -1,4 +1,4 @@
-//! Other programs that subscribe to velocity commands or publish them, and sentences that describe them.
+//! Finds other programs that subscribe to velocity commands or publish them, and describes them in sentences.
 
 use crate::choices::Stamped;
 use crate::graph::{Endpoint, Graph};
@@ -10,8 +10,8 @@ pub(crate) const TWIST: &str = "geometry_msgs/msg/Twist";
 pub(crate) const TWIST_STAMPED: &str = "geometry_msgs/msg/TwistStamped";
 
 impl Graph {
-    /// Returns `true` if velocity commands have a time stamp, and `None` if that depends on a subscriber that has not
-    /// been found. If there are subscribers of both types, commands have no time stamp.
+    /// Returns `true` if velocity commands have a time stamp; `None` if this depends on a subscriber that has not been
+    /// found yet. If there are subscribers of both types, commands have no time stamp.
     #[must_use]
     pub fn is_stamped(&self, topic: &str, stamped: Stamped) -> Option<bool> {
         let takes = |kind: &str| self.readers_of(topic).any(|reader| reader.kind == dds_type(kind));
@@ -59,8 +59,8 @@ impl Graph {
         }
     }
 
-    /// Returns a warning that there are subscribers of both types of velocity commands, of which `is_stamped` selects
-    /// one; `None` if all have the same type, or if the configuration selects the type.
+    /// Returns a warning that there are subscribers of both types of velocity commands; `is_stamped` tells which type
+    /// is used. Returns `None` if all subscribers have the same type, or if the configuration selects the type.
     #[must_use]
     pub fn about_types(&self, topic: &str, stamped: Stamped, is_stamped: bool) -> Option<String> {
         let takes = |kind: &str| self.readers_of(topic).any(|reader| reader.kind == dds_type(kind));
@@ -75,7 +75,8 @@ impl Graph {
         ))
     }
 
-    /// Returns a warning that other programs publish the velocity commands `topic`; `None` if there are none.
+    /// Returns a warning that other programs also publish velocity commands on `topic`; `None` if there are no such
+    /// programs.
     #[must_use]
     pub fn about_rivals(&self, topic: &str) -> Option<String> {
         let (others, them) = match self.writers_of(topic).count() {

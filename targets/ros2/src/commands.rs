@@ -17,7 +17,7 @@ use crate::participant::{Delivery, Participant, Writer};
 
 /// Interval at which the zero velocity is repeated.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Minimum number of repetitions: a suspension of the program uses up time.
+/// Minimum number of repetitions. It is needed because a suspension of the program may use up the time.
 const TIMES: u32 = 5;
 /// Maximum time for which a new writer waits for the subscribers of the writer that it replaces.
 const REJOINING: Duration = Duration::from_secs(5);
@@ -31,7 +31,7 @@ pub(crate) struct Commands {
 }
 
 impl Commands {
-    /// Returns a writer of commands to `topic`, with a time stamp if `is_stamped` is `true`.
+    /// Creates a writer of commands to `topic`; the commands have a time stamp if `is_stamped` is `true`.
     pub(crate) fn new(
         config: &Config,
         participant: &Participant,
@@ -42,7 +42,7 @@ impl Commands {
         Ok(Self { topic: topic.to_owned(), frame: config.frame_id.clone(), writer, is_stamped })
     }
 
-    /// Returns a writer of the same commands that belongs to `participant`.
+    /// Creates a writer of the same commands that belongs to `participant`.
     pub(crate) fn by(&self, participant: &Participant) -> Result<Self, Fault> {
         let writer = participant.writer(&self.topic, self.kind(), Delivery::Reliable)?;
         let (topic, frame) = (self.topic.clone(), self.frame.clone());
@@ -54,7 +54,8 @@ impl Commands {
         kind_of(self.is_stamped)
     }
 
-    /// Returns `true` if a program on the graph subscribes to commands of this type, and the middleware has matched it.
+    /// Returns `true` if a program on the graph subscribes to commands of this type and the middleware has connected it
+    /// to this writer.
     pub(crate) fn are_heard(&mut self, graph: &Graph) -> bool {
         // The middleware also matches a subscriber of another type, which cannot decode the commands.
         let kind = dds_type(self.kind());
@@ -104,7 +105,8 @@ impl Commands {
     }
 
     /// Sends a zero velocity repeatedly for the time `limit`, and then calls [`Commands::halt`]. A subscriber that has
-    /// just been found may not have found this writer yet: it then acknowledges earlier messages without reading them.
+    /// just been found may not have found this writer yet. In this case, it acknowledges earlier messages without
+    /// reading them.
     ///
     /// # Errors
     /// Fails if the reliable subscribers have not acknowledged the last zero velocity, or if there is no subscriber.
@@ -119,7 +121,8 @@ impl Commands {
     }
 
     /// Sends a zero velocity repeatedly until `expected` subscribers have been found, or until [`REJOINING`] has
-    /// passed. The first subscriber that is found may be another program than the robot.
+    /// passed. One subscriber is not sufficient, because the first one that is found may be a program other than the
+    /// robot.
     ///
     /// # Errors
     /// Fails if fewer subscribers were found.

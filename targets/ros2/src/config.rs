@@ -1,4 +1,4 @@
-//! Configuration of a robot that speaks ROS 2: a TOML file, the defaults, and the source of each value.
+//! Configuration of a robot that speaks ROS 2: values from a TOML file and defaults, and the source of each value.
 
 use std::fmt;
 use std::path::Path;
@@ -11,7 +11,7 @@ use mdle_serial::{Key, Settings, Steering, shortened};
 use crate::choices::{BumperSource, Distribution, RangeSensors, Stamped};
 use crate::names::absolute;
 
-/// Maximum DDS domain id: higher ids have no ports.
+/// Maximum DDS domain id; no ports exist for higher ids.
 const LAST_DOMAIN: u64 = 232;
 
 /// Declares the configuration. Each line declares one key: `name: type = default, in range, "unit" "help";`.
@@ -83,7 +83,7 @@ configuration! {
     bumper_type: BumperSource = "none".to_owned(), "" "none, bool, hazard or scan";
     /// Topic of the bumper, if its messages are of type `Bool` or `HazardDetectionVector`.
     bumper: String = "bumper".to_owned(), "" "topic of a bumper that is bool or hazard";
-    /// Distance from the body within which an obstacle in the scan counts as a contact, in metres.
+    /// Distance from the body within which an obstacle in the scan is treated as a contact, in metres.
     bumper_margin: f64 = 0.02, in 0.0..=1.0, "m" "around the body, for a bumper by scan";
     /// Topic of the battery; empty if the robot reports no battery.
     battery: String = String::new(), "" "topic of sensor_msgs/BatteryState; empty without one";
@@ -151,11 +151,11 @@ pub struct Configured {
 }
 
 impl Configured {
-    /// Reads the configuration file `file`; without a file, returns the defaults.
+    /// Reads the configuration file `file`. Without a file, the configuration consists of the defaults.
     ///
     /// # Errors
-    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The message gives the
-    /// place and the reason.
+    /// Fails if the file cannot be read, is not TOML, or has an unknown key or an invalid value. The message contains
+    /// the place in the file and the reason.
     pub fn read(file: Option<&Path>) -> Result<Self, String> {
         let mut settings = Settings::read(file)?;
         if !settings.has("domain") {
@@ -168,8 +168,8 @@ impl Configured {
     }
 }
 
-/// Prints the configuration as TOML that `--config` can read. The default domain is printed as a comment, because a
-/// domain in the file overrides `ROS_DOMAIN_ID`.
+/// Prints the configuration as TOML that the option `--config` can read. The default domain is printed as a comment,
+/// because a domain in the file would override `ROS_DOMAIN_ID`.
 impl fmt::Display for Configured {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for line in self.settings.to_string().lines() {
@@ -212,7 +212,7 @@ impl Config {
     }
 }
 
-/// Returns `true` if `bumper` has a topic of its own.
+/// Returns `true` if `bumper` has its own topic.
 pub(crate) fn has_topic(bumper: BumperSource) -> bool {
     match bumper {
         BumperSource::Bool | BumperSource::Hazard => true,

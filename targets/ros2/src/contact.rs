@@ -1,4 +1,4 @@
-//! Derives the pressed bumper switches from a message.
+//! Determines from a message which bumper switches are active.
 
 use crate::config::Config;
 use crate::messages::HazardDetectionVector;
@@ -7,11 +7,11 @@ use crate::scan::Scanner;
 /// Value of the field `type` of a hazard that is a contact.
 const BUMP: u8 = 1;
 
-/// Frames of the zones of a Create 3's bumper from left to right, in the order of the switches.
+/// Frames of the zones of a Create 3's bumper, from left to right and in the order of the switches.
 const ZONES: [&str; 5] = ["bump_left", "bump_front_left", "bump_front_center", "bump_front_right", "bump_right"];
 
-/// Returns the switches that `hazards` press: one bit for each bumper zone of a Create 3, and one bit for other
-/// contacts.
+/// Returns the switches that `hazards` activates: one bit for each bumper zone of a Create 3, and one bit for any other
+/// contact.
 #[must_use]
 pub fn of_hazards(hazards: &HazardDetectionVector) -> u32 {
     let bumps = hazards.detections.iter().filter(|hazard| hazard.kind == BUMP);
@@ -21,8 +21,8 @@ pub fn of_hazards(hazards: &HazardDetectionVector) -> u32 {
     })
 }
 
-/// Returns the switches that the rays of `scan` press: one bit for each quarter of the body (front, left, back and
-/// right) in which an obstacle is closer to the body than the margin.
+/// Returns the switches that the rays of `scan` activate. There is one bit for each quarter of the body (front, left,
+/// back and right); it is set if an obstacle in this quarter is closer to the body than the margin.
 #[must_use]
 pub fn of_scan(config: &Config, scanner: &Scanner, scan: &crate::messages::LaserScan) -> u32 {
     let (margin, shape) = (config.bumper_margin, config.shape());

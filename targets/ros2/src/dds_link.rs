@@ -1,4 +1,4 @@
-//! The link to the robot over DDS: finds the robot's topics, sends velocities and receives messages.
+//! The link to the robot over DDS. It finds the robot's topics, sends velocities, and receives messages.
 
 use std::mem;
 use std::time::{Duration, Instant};
@@ -23,15 +23,15 @@ use crate::sensing::Sensing;
 use crate::source::{Input, TopicPurpose};
 use crate::stamp::ros_now;
 
-/// Maximum number of further participants with which the driver searches for the robot.
+/// Maximum number of times that the driver joins with a new participant in order to search for the robot.
 const REJOINS: u32 = 2;
-/// Minimum time without a turn after which the middleware may have dropped the robot, and the robot may have dropped
-/// this program. CycloneDDS and RustDDS consider a program that is silent for 10 s dead, others later.
+/// Minimum time without a turn after which the middleware may have dropped the robot, or the robot may have dropped
+/// this program. CycloneDDS and RustDDS drop a program that is silent for 10 s; other middleware drops it later.
 const FORGOTTEN: Duration = Duration::from_secs(8);
 /// Maximum number of new participants with which the driver tries to stop a robot that may have been dropped.
 const ATTEMPTS: u32 = 3;
 
-/// The readers of a participant, by their topics.
+/// The readers of a participant, each with its topic.
 type Readers = Vec<(Input, Reader)>;
 
 /// A link to the robot over DDS.
@@ -39,9 +39,9 @@ pub struct DdsLink {
     participant: Participant,
     readers: Readers,
     commands: Commands,
-    /// The participants before this one, with which the state of the plan is published.
+    /// Earlier participants, which still publish the state of the plan.
     earlier: Vec<(Participant, Readers, Commands)>,
-    /// Number of subscribers of the last command before a suspension.
+    /// Number of subscribers of velocity commands at the last command before a suspension.
     subscribers: i32,
     /// Time of the last command or check for messages.
     active: Instant,
@@ -50,10 +50,10 @@ pub struct DdsLink {
     config: Config,
     state: Option<Writer>,
     diagnostics: Option<Writer>,
-    /// Writer that announces the node to the graph, kept for as long as the node exists.
+    /// Writer that announces the node to the graph. It is kept as long as the node exists.
     node: Option<Writer>,
     publishers: Publishers,
-    /// Time of `/clock` in nanoseconds, for the headers of commands; `None` if headers have the system's time.
+    /// Time of `/clock` in nanoseconds, for the headers of commands; `None` if headers contain the system's time.
     clock: Option<i64>,
 }
 
@@ -78,8 +78,8 @@ impl DdsLink {
         }
     }
 
-    /// Joins the domain, and waits until all topics have been found. Returns `None` if `may_rejoin` is `true` and a
-    /// publisher does not appear to have found this participant.
+    /// Joins the domain, and waits until all topics have been found. Returns `None` if `may_rejoin` is `true` and it
+    /// seems that a publisher has not found this participant.
     fn join(search: &Search<'_>, pacing: Pacing, may_rejoin: bool) -> Result<Option<(Self, Sensing)>, Fault> {
         let config = search.config;
         let mut sensing = Sensing::new(config).map_err(Fault::Middleware)?;
@@ -118,8 +118,8 @@ impl DdsLink {
         Ok(Some((link, sensing)))
     }
 
-    /// Returns warnings, as sentences, about other publishers of the velocity commands and about subscribers of both
-    /// types that have been found so far.
+    /// Returns warnings, as sentences, about other publishers of velocity commands, and about subscribers of both
+    /// command types, that have been found so far.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let (graph, Commands { topic, is_stamped, .. }) = (self.participant.graph(), &self.commands);
@@ -127,7 +127,7 @@ impl DdsLink {
         graph.about_rivals(topic).into_iter().chain(types).collect()
     }
 
-    /// Announces to the graph the node that owns the readers and writers.
+    /// Announces the node that owns the readers and writers to the graph.
     fn announce(&self, config: &Config) -> Result<Option<Writer>, Fault> {
         let is_long = match config.distribution {
             Distribution::Humble => true,
@@ -156,13 +156,13 @@ impl DdsLink {
         self.active = Instant::now();
     }
 
-    /// Returns the time for the header of a command.
+    /// Returns the time stamp for the header of a command.
     fn stamp(&self) -> i64 {
         self.clock.unwrap_or_else(ros_now)
     }
 
-    /// Stops the robot with a new participant, after finding as many subscribers as the first participant had. The new
-    /// participant also reads the robot's topics from now on.
+    /// Stops the robot with a new participant, after finding as many subscribers as the first participant had. From now
+    /// on, the new participant also reads the robot's topics.
     fn halt_anew(&mut self, limit: Duration) -> Result<bool, Fault> {
         let (expected, stamp) = (self.subscribers.max(1), self.stamp());
         let participant = Participant::join(&self.config)?;

@@ -1,4 +1,4 @@
-//! The driver of a robot that speaks ROS 2, as a kinetic state machine: the input is a velocity command, and the output
+//! The driver of a robot that speaks ROS 2, as a kinetic state machine. The input is a velocity command; the output
 //! combines the latest messages.
 
 use std::thread::sleep;
@@ -18,24 +18,24 @@ use crate::stamp::ros_now;
 
 /// Interval between two checks for messages.
 pub(crate) const LOOK: Duration = Duration::from_micros(500);
-/// Maximum real time to wait for a robot whose time is not the host's clock.
+/// Maximum real time to wait for a robot in lockstep or in a simulation, which has its own time.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Maximum time by which `/clock` may go back, in nanoseconds.
 const BACK: i64 = 1_000_000_000;
 /// Maximum time for which the zero velocity is repeated.
 pub(crate) const HALTING: Duration = Duration::from_millis(500);
-/// Maximum time in which odometry has to report that the robot slows down after the zero velocity.
+/// Maximum time after the zero velocity until odometry has to report that the robot slows down.
 const SLOWING: Duration = Duration::from_secs(3);
-/// Time before the end of [`SLOWING`] of which the lowest speeds count.
+/// Length of the last part of [`SLOWING`]; the lowest speeds within this part are used.
 const JUDGED: Duration = Duration::from_secs(1);
 /// Minimum time for which the robot has to be at rest.
 const STANDING: Duration = Duration::from_millis(200);
-/// Speeds below which the robot counts as being at rest.
+/// Speeds below which the robot is treated as being at rest.
 const REST: Twist = Twist { v: MetersPerSecond(0.02), omega: RadiansPerSecond(0.05) };
 /// Interval after which an unchanged state of the plan is published again.
 const REPEAT: Nanos = Nanos(1_000_000_000);
 
-/// A robot that speaks ROS 2 and is reached through the link `L`.
+/// A robot that speaks ROS 2. The driver reaches it through the link `L`.
 #[derive(Debug)]
 pub struct Ros2<L> {
     link: L,
@@ -56,7 +56,7 @@ pub struct Ros2<L> {
 }
 
 impl<L: Link> Ros2<L> {
-    /// Returns the driver of the robot that `link` reaches; `sensing` holds the robot's first messages.
+    /// Creates the driver of a robot. `link` reaches the robot, and `sensing` contains the robot's first messages.
     pub fn new(config: Config, link: L, sensing: Sensing, pacing: Pacing, request: StopRequest, begun: Moment) -> Self {
         let times = Times::new(pacing.clock());
         Self {
@@ -74,13 +74,13 @@ impl<L: Link> Ros2<L> {
         }
     }
 
-    /// Stores the recorded paths that the plan replays.
+    /// Stores the recorded paths that the plan can replay.
     pub fn take_paths(&mut self, paths: PathStore) {
         self.sensing.paths = paths;
     }
 
-    /// Returns `input` limited to the maximum speeds: both speeds are reduced by the same factor, so that the robot
-    /// stays on its curve.
+    /// Limits `input` to the maximum speeds. Both speeds are reduced by the same factor, so that the robot stays on its
+    /// curve.
     fn limited(&self, input: &Twist) -> Result<Twist, Fault> {
         if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
             return Err(Fault::NoNumber);
@@ -90,7 +90,7 @@ impl<L: Link> Ros2<L> {
         Ok(Twist { v: MetersPerSecond(input.v.0 * scale), omega: RadiansPerSecond(input.omega.0 * scale) })
     }
 
-    /// Returns the current time, from which the age of messages is computed.
+    /// Returns the current time; the age of messages is computed from it.
     fn now(&self) -> Duration {
         match self.pacing {
             Pacing::Wall => self.begun.elapsed(),
@@ -109,8 +109,8 @@ impl<L: Link> Ros2<L> {
     /// Updates the latest time of `/clock`.
     ///
     /// # Errors
-    /// Fails if `/clock` has gone back by more than [`BACK`]. Turns would wait until it has caught up, while the robot
-    /// continues to drive.
+    /// Fails if `/clock` has gone back by more than [`BACK`], because turns would wait until it has caught up while the
+    /// robot continued to drive.
     fn follow_clock(&mut self) -> Result<(), Fault> {
         let clock = self.sensing.clock();
         let back = self.latest.saturating_sub(clock);
@@ -179,16 +179,17 @@ impl<L: Link> Ros2<L> {
         Twist { v: MetersPerSecond(velocity.v.0.abs()), omega: RadiansPerSecond(velocity.omega.0.abs()) }
     }
 
-    /// Returns `true` if the last odometry is not stale, and reports a robot at rest.
+    /// Returns `true` if the last odometry is not stale and reports that the robot is at rest.
     fn rests(&mut self) -> bool {
         let is_informed = self.receive(Nanos::ZERO).is_ok() && self.sensing.check(self.now()).is_ok();
         is_informed && is_within(self.speeds(), REST)
     }
 
-    /// Waits until new odometry reports a robot that stands. Returns `false` if no new odometry has come.
+    /// Waits until new odometry reports that the robot is at rest. Returns `false` if no new odometry has arrived.
     ///
     /// # Errors
-    /// Fails if odometry continues to report more than a quarter of the speeds that the robot had `before`.
+    /// Fails if odometry continues to report more than a quarter of the speeds `before`, which the robot had before it
+    /// was stopped.
     fn slows(&mut self, before: Twist) -> Result<bool, Fault> {
         // What has come while the robot was being stopped, or while the program was suspended, is no news.
         if self.receive(Nanos::ZERO).is_err() {
@@ -226,7 +227,7 @@ impl<L: Link> Ros2<L> {
         }
     }
 
-    /// Publishes the state of the plan. A state that cannot be encoded is not published, and the plan continues.
+    /// Publishes the state of the plan. If the state cannot be encoded, it is not published, and the plan continues.
     fn tell(&mut self, state: &PlanState) {
         let stamp = if self.config.use_sim_time { self.sensing.clock() } else { ros_now() };
         if let Ok(messages) = state.messages(stamp) {
@@ -240,7 +241,7 @@ fn is_within(speeds: Twist, limits: Twist) -> bool {
     speeds.v.0 < limits.v.0 && speeds.omega.0 < limits.omega.0
 }
 
-/// Returns the smaller of each speed.
+/// Returns the lower speed of both, separately for the forward speed and the turn rate.
 fn least(one: Twist, other: Twist) -> Twist {
     Twist { v: MetersPerSecond(one.v.0.min(other.v.0)), omega: RadiansPerSecond(one.omega.0.min(other.omega.0)) }
 }

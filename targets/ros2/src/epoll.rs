@@ -1,8 +1,9 @@
-//! Replacements for the epoll(7) functions of the C library that continue to wait after the program was suspended.
+//! Replaces the epoll(7) functions of the C library with functions that continue to wait after the program was
+//! suspended.
 //!
 //! After a suspension (SIGSTOP, Ctrl-Z, an attached debugger) Linux ends each `epoll_wait` with `EINTR`, see signal(7).
-//! The threads of RustDDS treat this as an error and end permanently: the robot could then neither be heard nor
-//! stopped. The replacements resume the wait until its timeout.
+//! The threads of RustDDS treat this as an error and end permanently: the driver could then neither receive data from
+//! the robot nor stop it. The replacements resume the wait until its timeout.
 //!
 //! The C library musl defines all of these functions in one object file, so replacing one requires replacing all.
 #![allow(unsafe_code, reason = "the linker finds functions by names that are not mangled, and the system fills memory")]
@@ -34,7 +35,8 @@ unsafe extern "C" fn epoll_ctl(epoll: c_int, operation: c_int, fd: c_int, event:
     narrow(unsafe { syscall(SYS_epoll_ctl, epoll, operation, fd, event) })
 }
 
-/// Waits for events of the epoll instance `epoll` for `timeout` milliseconds; without limit if `timeout` is negative.
+/// Waits for events of the epoll instance `epoll` for at most `timeout` milliseconds. A negative `timeout` means no
+/// limit.
 ///
 /// # Safety
 /// `events` points to space for `most` events.
@@ -56,7 +58,7 @@ unsafe extern "C" fn epoll_wait(epoll: c_int, events: *mut epoll_event, most: c_
     }
 }
 
-/// Converts the result of a system call (a small number, or -1) to the function's return type.
+/// Converts the result of a system call, which is a small number or -1, to the function's return type.
 fn narrow(result: c_long) -> c_int {
     c_int::try_from(result).unwrap_or(-1)
 }

@@ -10,23 +10,24 @@ use mdle_runtime::Twist;
 pub enum Fault {
     /// The middleware does not work; contains the reason as a sentence.
     Middleware(String),
-    /// This computer does not have the address of the only network to use; contains the reason as a sentence.
+    /// The configuration names the only network to use, but this computer has no address in it; contains the reason as
+    /// a sentence.
     Network(String),
-    /// Topics are missing; the text names them and the topics on the graph.
+    /// Topics are missing; the text lists the missing topics and the topics on the graph.
     Missing(String),
     /// The run was asked to end while the driver was searching for the robot.
     Ended,
     /// A law has requested a speed that is not a number.
     NoNumber,
-    /// The odometry has no valid pose.
+    /// The odometry contains an invalid pose.
     NoPose,
-    /// The odometry has a speed that is not a number.
+    /// The odometry contains a speed that is not a number.
     NoSpeed,
-    /// Odometry went back in time by this number of seconds.
+    /// The time of odometry went back by this number of seconds.
     Backwards(f64),
     /// The time of `/clock` went back by this number of seconds.
     ClockReset(f64),
-    /// Odometry jumped farther than the robot can have moved.
+    /// The pose of odometry changed by more than the robot can have moved.
     Jumped {
         /// Distance of the jump, in metres.
         way: f64,
@@ -41,8 +42,8 @@ pub enum Fault {
         topic: String,
         /// Number of programs that publish the topic.
         count: usize,
-        /// `true` if each publisher began to send only after the previous one had stopped, as after a restart of the
-        /// robot.
+        /// `true` if each publisher began to send only after the previous one had stopped, as happens when the robot is
+        /// restarted.
         may_be_restart: bool,
     },
     /// The last message of a topic is too old.
@@ -56,7 +57,7 @@ pub enum Fault {
         /// Reason why the last message was rejected; empty if no message arrived.
         why: String,
     },
-    /// No program subscribes to velocity commands any longer; the text is the topic's name.
+    /// No program subscribes to velocity commands any longer; contains the name of the topic.
     Unheard(String),
     /// Odometry reports that the robot continues to drive after the zero velocity.
     Moving {
@@ -74,10 +75,10 @@ pub enum Fault {
         /// Number of subscribers before the suspension.
         expected: i32,
     },
-    /// No subscriber acknowledges commands, and no odometry has come since the zero velocity; the text is the
-    /// odometry's topic.
+    /// No subscriber acknowledges commands, and no odometry has arrived since the zero velocity; contains the name of
+    /// the odometry's topic.
     Unseen(String),
-    /// No subscriber of velocity commands has acknowledged the zero velocity; the text is the topic's name.
+    /// No subscriber of velocity commands has acknowledged the zero velocity; contains the name of the topic.
     Unacknowledged(String),
 }
 

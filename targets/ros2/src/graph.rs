@@ -16,9 +16,9 @@ pub struct Endpoint {
     pub topic: String,
     /// Name of the message type in DDS.
     pub kind: String,
-    /// `true` if delivery is reliable: the reader acknowledges messages, or the writer waits for acknowledgements.
+    /// `true` if delivery is reliable: a reader then acknowledges messages, and a writer waits for acknowledgements.
     pub is_reliable: bool,
-    /// Quality of service that does not match the driver's; `None` if all settings match.
+    /// Setting of the quality of service that does not match the driver's; `None` if all settings match.
     pub mismatch: Option<String>,
 }
 
@@ -44,15 +44,15 @@ impl Graph {
         self.writers.iter().filter(move |writer| writer.topic == name)
     }
 
-    /// Returns the number of publishers of the topic of `input` whose message type is that of `input`.
+    /// Returns the number of publishers that send messages of the type of `input` on the topic of `input`.
     #[must_use]
     pub fn publishers(&self, input: &Input) -> usize {
         let kind = dds_type(input.kind);
         self.writers_of(&input.topic).filter(|writer| writer.kind == kind).count()
     }
 
-    /// Returns `true` if the topic of `input` has publishers, and all have the expected type and a matching quality of
-    /// service.
+    /// Returns `true` if the topic of `input` has publishers, and all of them have the expected type and a matching
+    /// quality of service.
     #[must_use]
     pub fn is_offered(&self, input: &Input) -> bool {
         let kind = dds_type(input.kind);
@@ -60,7 +60,7 @@ impl Graph {
         writers.peek().is_some() && writers.all(|writer| writer.kind == kind && writer.mismatch.is_none())
     }
 
-    /// Returns a sentence that explains why no message of a topic could be read; `left_out` is the reason why a message
+    /// Returns a sentence that explains why no message of a topic could be used; `left_out` is the reason why a message
     /// was rejected.
     #[must_use]
     pub fn about_input(&self, input: &Input, left_out: &str) -> String {
@@ -94,7 +94,8 @@ impl Graph {
         format!("{}{more}; {listed}", missing.join("; "))
     }
 
-    /// Returns a sentence that lists the topics on the graph, those with publishers before those with subscribers.
+    /// Returns a sentence that lists the topics on the graph. Topics with publishers come before topics with
+    /// subscribers.
     #[must_use]
     pub fn listed(&self, config: &Config) -> String {
         let domain = config.domain;
@@ -112,7 +113,7 @@ impl Graph {
     }
 }
 
-/// Returns a list of the topics of `endpoints` with their types; `None` if none of them is a ROS 2 topic.
+/// Returns a list of the topics of `endpoints`, with their types; `None` if no topic belongs to ROS 2.
 fn listed_topics(endpoints: &[Endpoint]) -> Option<String> {
     let mut topics: Vec<_> = endpoints
         .iter()

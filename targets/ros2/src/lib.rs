@@ -1,8 +1,8 @@
 //! The target for robots that speak ROS 2: topics, driver and alphabet.
 //!
-//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has. The
-//! module [`sensing`] combines the messages of all topics into the output of a turn and performs no I/O. [`Link`]
-//! abstracts the middleware.
+//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], which contains the quarks of this
+//! robot. The module [`sensing`] combines the messages of all topics into the output of a turn and performs no I/O.
+//! [`Link`] abstracts the middleware.
 
 pub mod alphabet;
 pub mod battery;

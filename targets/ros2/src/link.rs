@@ -1,4 +1,4 @@
-//! The interface between the driver and the middleware, which tests can replace.
+//! The interface between the driver and the middleware. Tests provide their own implementation.
 
 use std::time::Duration;
 
@@ -16,14 +16,14 @@ pub trait Link {
     /// Fails if no program subscribes to velocity commands.
     fn command(&mut self, twist: Twist) -> Result<(), Fault>;
 
-    /// Calls `take` with the topic index and the bytes of each message that arrived since the last call.
+    /// Calls `take` with the topic index and the bytes of each message that has arrived since the last call.
     ///
     /// # Errors
     /// Fails if `take` fails, or if several programs publish the odometry.
     fn receive(&mut self, take: &mut dyn FnMut(usize, &Payload) -> Result<(), Fault>) -> Result<(), Fault>;
 
-    /// Sends a zero velocity until all subscribers that acknowledge messages have done so, or until `limit` has passed.
-    /// Returns `false` if no subscriber acknowledges messages.
+    /// Sends a zero velocity until all reliable subscribers (those that acknowledge messages) have acknowledged it, or
+    /// until the time `limit` has passed. Returns `false` if no subscriber is reliable.
     ///
     /// # Errors
     /// Fails if the reliable subscribers have not acknowledged the zero velocity in time, or if there is no subscriber.

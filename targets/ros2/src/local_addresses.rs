@@ -1,16 +1,17 @@
-//! Addresses of this computer: checks the address of the only network that the driver may use.
+//! Reads the addresses of this computer, and checks that the only network that the driver may use is among them.
 
 use std::fs;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 
-/// File that lists the routes of this computer, including those to its own addresses.
+/// File that lists the routes of this computer, including the routes to its own addresses.
 const ROUTES: &str = "/proc/net/fib_trie";
 
-/// Returns the address in `text`, the value of the key `network`; `None` if `text` is empty, for all networks.
+/// Parses the value `text` of the key `network`, which is an address. Returns `None` if `text` is empty, which means
+/// all networks.
 ///
 /// # Errors
-/// Returns a sentence with the reason and the addresses of this computer if `text` is no address, no computer can have
-/// the address, or the middleware cannot use it.
+/// Returns a sentence with the reason and the addresses of this computer if `text` is not an address, if no computer
+/// can have this address, or if the middleware cannot use it.
 pub(crate) fn read(text: &str) -> Result<Option<Ipv4Addr>, String> {
     if text.is_empty() {
         return Ok(None);
@@ -36,7 +37,7 @@ pub(crate) fn check(address: Ipv4Addr) -> Result<(), String> {
     Routes::of_this_computer().check(address)
 }
 
-/// Returns the error message for the value `network` of the key of that name, with the reason `why`.
+/// Returns the error message about the value of the key `network`; `why` is the reason.
 fn refusal(network: &str, why: &str, routes: &Routes) -> String {
     let own: Vec<_> = routes.own.iter().map(Ipv4Addr::to_string).collect();
     let has = if own.is_empty() { "none of IPv4".to_owned() } else { own.join(", ") };
@@ -57,7 +58,7 @@ impl Routes {
         Self::of(&fs::read_to_string(ROUTES).unwrap_or_default())
     }
 
-    /// Returns the addresses in `text`, the contents of the file [`ROUTES`].
+    /// Parses the addresses in `text`, the contents of the file [`ROUTES`].
     fn of(text: &str) -> Self {
         let lines: Vec<_> = text.lines().map(str::trim).collect();
         let of_kind = |kind: &str| {

@@ -1,4 +1,4 @@
-//! ROS 2 messages that the driver sends and reads. The fields have the order of the message definitions.
+//! ROS 2 messages that the driver sends and receives. The fields have the order of the ROS 2 message definitions.
 
 use std::fmt;
 
@@ -134,7 +134,8 @@ impl Time {
         i64::from(self.sec) * NANOS + i64::from(self.nanosec)
     }
 
-    /// Returns the time `nanos` nanoseconds after the epoch. A time out of range becomes the nearest time in range.
+    /// Returns the time `nanos` nanoseconds after the epoch. If the result would be out of range, returns the nearest
+    /// valid time.
     #[must_use]
     pub fn of(nanos: i64) -> Self {
         let sec = i32::try_from(nanos.div_euclid(NANOS)).unwrap_or(if nanos < 0 { i32::MIN } else { i32::MAX });
@@ -190,12 +191,12 @@ impl<'de> Deserialize<'de> for Covariance {
     }
 }
 
-/// Id of a participant, reader or writer: 16 bytes, followed by 8 zeros up to the distribution Humble.
+/// Id of a participant, reader or writer. It has 16 bytes; up to the distribution Humble, 8 zeros follow.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Gid {
     /// First 16 bytes of the id.
     pub bytes: [u8; 16],
-    /// `true` for the layout of Humble, with 8 zeros after the id.
+    /// `true` for the layout of Humble, in which 8 zeros follow the id.
     pub is_long: bool,
 }
 

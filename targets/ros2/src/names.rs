@@ -1,4 +1,4 @@
-//! Conversion of the names of topics and types between ROS 2 and DDS.
+//! Converts names of topics and types between ROS 2 and DDS.
 
 /// Returns the absolute name of a topic; a relative name is placed in `namespace`.
 ///
@@ -18,7 +18,7 @@ pub fn absolute(namespace: &str, name: &str) -> Result<String, String> {
     }
 }
 
-/// Returns `true` if `text` is a valid namespace, which may be empty and may have a slash at each end.
+/// Returns `true` if `text` is a valid namespace. It may be empty, and may have a slash at each end.
 #[must_use]
 pub fn is_namespace(text: &str) -> bool {
     let words = text.strip_prefix('/').unwrap_or(text);
@@ -26,7 +26,7 @@ pub fn is_namespace(text: &str) -> bool {
     words.is_empty() || words.split('/').all(is_word)
 }
 
-/// Returns `true` if `word` is valid between two slashes of a name.
+/// Returns `true` if `word` is valid as a part of a name between two slashes.
 fn is_word(word: &str) -> bool {
     let starts = word.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_');
     starts && word.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_')

@@ -1,4 +1,4 @@
-//! The pose and speed that odometry reports, with plausibility checks.
+//! The pose and the speed that odometry reports, after plausibility checks.
 
 use std::collections::VecDeque;
 
@@ -8,16 +8,17 @@ use crate::config::Config;
 use crate::fault::Fault;
 use crate::messages::{Odometry, Time};
 
-/// Maximum step back in the time of odometry, in nanoseconds; after a larger step the run ends with a fault.
+/// Maximum step, in nanoseconds, by which the time of odometry may go back. After a larger step, the run ends with a
+/// fault.
 const BACK: i64 = 1_000_000_000;
-/// Number of stored poses, from which the pose at the time of a scan is chosen.
+/// Number of stored poses. The pose at the time of a scan is chosen from them.
 const KEPT: usize = 32;
-/// Tolerance of the plausibility check: factor by which a robot may exceed its maximum speeds.
+/// Tolerance of the plausibility check: the factor by which a robot may exceed its maximum speeds.
 const OVERSHOOT: f64 = 1.5;
-/// Angle by which the heading may change beyond the maximum turn, in radians.
+/// Angle, in radians, by which a change of heading may exceed the maximum turn.
 const JUMP: f64 = 0.6;
 
-/// A pose with the time of its message.
+/// A pose, and the time of its message.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Timed {
     /// Time of the message, in nanoseconds; 0 if the robot has no clock.
@@ -35,14 +36,14 @@ pub struct Odometer {
 }
 
 impl Odometer {
-    /// Returns an odometer that has received no message yet.
+    /// Creates an odometer that has received no message yet.
     #[must_use]
     pub fn new(config: &Config) -> Self {
         let fastest = Twist { v: MetersPerSecond(config.fastest), omega: RadiansPerSecond(config.fastest_turn) };
         Self { poses: VecDeque::new(), velocity: Twist::default(), fastest, jump: config.jump }
     }
 
-    /// Stores a message that arrived `since` seconds after the previous message; returns `false` if its time stamp is
+    /// Stores a message that arrived `since` seconds after the previous message. Returns `false` if its time stamp is
     /// not newer than the last one.
     ///
     /// # Errors
@@ -69,7 +70,7 @@ impl Odometer {
         Ok(true)
     }
 
-    /// Checks that the robot can have moved from pose `last` to `next` within `seconds`.
+    /// Checks that the robot can have moved from the pose `last` to the pose `next` within `seconds`.
     fn believe(&self, last: Pose, next: Pose, seconds: f64) -> Result<(), Fault> {
         let way = last.distance(&next).0;
         let turn = Radians(next.theta.0 - last.theta.0).wrapped().0.abs();

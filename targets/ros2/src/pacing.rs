@@ -1,4 +1,4 @@
-//! Time source of a run: the host's clock, the steps of a robot in lockstep, or the clock of a simulation.
+//! Time source of a run: the host's clock, lockstep with the robot, or the clock of a simulation.
 
 use std::time::Duration;
 
@@ -10,14 +10,14 @@ use mdle_serial::Clock;
 pub enum Pacing {
     /// The clock of the host.
     Wall,
-    /// Lockstep: each turn lasts this period, and begins when all topics have answered the last command.
+    /// Lockstep. Each turn lasts for this period, and begins when all topics have answered the last command.
     Lockstep(Duration),
-    /// The clock of a simulation: each turn lasts this period, and begins when `/clock` has advanced by it.
+    /// The clock of a simulation. Each turn lasts for this period, and begins when `/clock` has advanced by the period.
     Simulated(Duration),
 }
 
 impl Pacing {
-    /// Returns the clock by which outputs are timed.
+    /// Returns the clock that determines the times of outputs.
     #[must_use]
     pub fn clock(self) -> Clock {
         match self {
@@ -26,7 +26,7 @@ impl Pacing {
         }
     }
 
-    /// Returns the time by which the host paces the turns.
+    /// Returns the time source that the host uses to pace the turns.
     #[must_use]
     pub fn time(self) -> Time {
         match self {

@@ -1,4 +1,4 @@
-//! The driver's DDS participant, with its readers and writers.
+//! The driver's DDS participant, and its readers and writers.
 
 use std::net::IpAddr;
 use std::time::Duration;
@@ -20,11 +20,11 @@ use crate::payload_adapter::PayloadAdapter;
 
 /// Maximum number of messages that a reader stores between two turns.
 const KEPT: i32 = 16;
-/// Maximum number of commands that a subscriber may leave unacknowledged before the next command is rejected. At 50 Hz
-/// this corresponds to 20 s, after which a dead program has left the graph.
+/// Maximum number of commands that a subscriber may leave unacknowledged; the next command is then rejected. At 50 Hz,
+/// this number corresponds to 20 s, after which a dead program has left the graph.
 const UNACKNOWLEDGED: i32 = 1000;
-/// Maximum number of states of the plan that a subscriber may leave unacknowledged; also the number of states that a
-/// late subscriber receives.
+/// Maximum number of states of the plan that a subscriber may leave unacknowledged. A subscriber that joins late
+/// receives the same number of states.
 const STATES: i32 = 8;
 /// Maximum time for which a writer waits for space in its queue.
 const BLOCKING: rustdds::Duration = rustdds::Duration::from_millis(1);
@@ -42,7 +42,7 @@ pub(crate) struct Reader(SimpleDataReader<Payload, PayloadAdapter>);
 /// A writer of one topic.
 pub(crate) struct Writer {
     writer: DataWriter<Payload, PayloadAdapter>,
-    /// Number of subscribers that are matched at present.
+    /// Number of subscribers that the middleware has connected to this writer.
     matched: i32,
 }
 
@@ -56,11 +56,11 @@ pub(crate) struct Arrival {
 /// Delivery guarantee of a topic's messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Delivery {
-    /// Best effort: only the newest message counts, and each message may be lost.
+    /// Best effort: only the newest message is relevant, and any message may be lost.
     BestEffort,
     /// Reliable: every message arrives.
     Reliable,
-    /// Reliable and latched: every message arrives, and later subscribers also receive the last messages.
+    /// Reliable and latched: every message arrives, and subscribers that join later also receive the last messages.
     Latched,
 }
 
@@ -104,12 +104,12 @@ impl Participant {
         reader.map(Reader).map_err(|error| refused(topic, &error.to_string()))
     }
 
-    /// Returns a writer for the topic with this absolute name.
+    /// Creates a writer for the topic with this absolute name.
     pub(crate) fn writer(&self, topic: &str, kind: &str, delivery: Delivery) -> Result<Writer, Fault> {
         self.dds_writer(&dds_topic(topic), kind, delivery)
     }
 
-    /// Returns a writer for the topic with this name in DDS.
+    /// Creates a writer for the topic with this DDS name.
     pub(crate) fn dds_writer(&self, topic: &str, kind: &str, delivery: Delivery) -> Result<Writer, Fault> {
         let qos = match delivery {
             Delivery::BestEffort | Delivery::Reliable => delivery.qos(UNACKNOWLEDGED),
@@ -158,21 +158,21 @@ impl Participant {
     }
 }
 
-/// Returns the operating system's error text from the middleware's message `error`, which contains it in Rust's debug
-/// format. Returns `error` unchanged if it contains no such text.
+/// Extracts the operating system's error text from the middleware's message `error`, which contains this text in Rust's
+/// debug format. If there is no such text, returns `error` unchanged.
 fn plain(error: &str) -> String {
     let code = error.split_once("Os { code: ").and_then(|(_, rest)| rest.split_once(','));
     let code = code.and_then(|(code, _)| code.parse().ok());
     code.map_or_else(|| error.to_owned(), |code| std::io::Error::from_raw_os_error(code).to_string())
 }
 
-/// Returns the fault for a topic that the middleware failed to create.
+/// Returns the fault about a topic that the middleware could not create.
 fn refused(topic: &str, why: &str) -> Fault {
     Fault::Middleware(format!("`{topic}` cannot be used: {why}"))
 }
 
 impl Reader {
-    /// Returns the next message, if a message has arrived.
+    /// Returns the next message that has arrived; `None` if no message has arrived.
     pub(crate) fn take(&self) -> Option<Arrival> {
         self.0.drain_read_notifications();
         loop {
@@ -200,12 +200,13 @@ impl Writer {
         self.writer.write(payload, None).map_err(|error| error.to_string())
     }
 
-    /// Waits until all reliable subscribers have acknowledged all messages; returns `false` if `within` passes first.
+    /// Waits until all reliable subscribers have acknowledged all messages. Returns `false` if the time `within` passes
+    /// first.
     pub(crate) fn is_acknowledged(&self, within: Duration) -> bool {
         self.writer.wait_for_acknowledgments(within).unwrap_or(false)
     }
 
-    /// Returns the number of matched subscribers.
+    /// Returns the number of subscribers that the middleware has connected to this writer.
     pub(crate) fn matched(&mut self) -> i32 {
         while let Some(status) = self.writer.try_recv_status() {
             if let DataWriterStatus::PublicationMatched { current, .. } = status {

@@ -1,4 +1,4 @@
-//! Adapter that passes encoded messages to and from RustDDS unchanged; other modules decode them.
+//! An adapter that passes encoded messages to and from RustDDS without changing them. Other modules decode them.
 
 use std::convert::Infallible;
 

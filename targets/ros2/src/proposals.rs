@@ -1,4 +1,4 @@
-//! Proposes configuration entries for missing topics, based on the topics of the same type on the graph.
+//! Proposes configuration entries for missing topics. The proposals are topics of the same type that are on the graph.
 
 use std::collections::BTreeSet;
 
@@ -12,18 +12,18 @@ use crate::source::Input;
 /// Maximum number of topics in a list.
 const LISTED: usize = 8;
 
-/// A missing topic, with the topics of the same type on the graph.
+/// A missing topic, and the topics of the same type on the graph.
 #[derive(Debug, Clone, PartialEq, Eq)]
 struct Missing<'a> {
     key: &'static str,
-    /// `true` if the topic may be proposed without reservation when it is the only one of its type.
+    /// `true` if the only topic of this type on the graph may be proposed without reservation.
     is_telling: bool,
     topic: &'a str,
     candidates: BTreeSet<&'a str>,
 }
 
 impl<'a> Missing<'a> {
-    /// Returns `topic` as a missing topic; `None` if one of `endpoints` has it.
+    /// Creates the data about the missing topic `topic`; `None` if one of `endpoints` has this topic.
     fn among(
         endpoints: &'a [Endpoint],
         topic: &'a str,
@@ -39,14 +39,14 @@ impl<'a> Missing<'a> {
         Some(Self { key, is_telling, topic, candidates: candidates.collect() })
     }
 
-    /// Returns the namespaces in which the graph has this topic.
+    /// Returns the namespaces in which the graph contains this topic.
     fn namespaces(&self) -> BTreeSet<&'a str> {
         let inside = self.candidates.iter().filter_map(|candidate| candidate.strip_suffix(self.topic));
         inside.filter(|namespace| !namespace.is_empty()).collect()
     }
 
-    /// Returns an entry with the most probable topic, and the other candidates in a comment; `None` if no topic of the
-    /// type is on the graph.
+    /// Returns a configuration entry with the most probable topic, and the other candidates in a comment; `None` if no
+    /// topic of the type is on the graph.
     fn choice(&self) -> Option<String> {
         let last = |topic: &'a str| topic.rsplit('/').next().unwrap_or(topic);
         let mut candidates: Vec<_> = self.candidates.iter().copied().collect();
@@ -67,9 +67,10 @@ impl<'a> Missing<'a> {
 }
 
 impl Graph {
-    /// Returns a help text with configuration entries for the missing topics for which the graph has candidates of the
-    /// same type; empty if there are no candidates. If all missing topics exist in a single other namespace, the entry
-    /// sets `namespace`, unless `config` has absolute names, which a namespace does not change.
+    /// Returns a help text with configuration entries for missing topics. It contains the missing topics for which the
+    /// graph has candidates of the same type; empty if there are no candidates. If all missing topics exist in a single
+    /// other namespace, the entry sets `namespace`, unless `config` contains absolute names, because a namespace does
+    /// not change these.
     #[must_use]
     pub fn help<'i>(&'i self, inputs: impl Iterator<Item = &'i Input>, commands: &'i str, config: &Config) -> String {
         let of_input =
@@ -93,8 +94,8 @@ impl Graph {
     }
 }
 
-/// Returns an entry that sets the only namespace with all topics of `missing`; `None` if `missing` has fewer than two
-/// topics, or if there is no single such namespace.
+/// Returns an entry that sets the namespace that contains all topics in `missing`; `None` if `missing` has fewer than
+/// two topics, or if there is not exactly one such namespace.
 fn namespace(missing: &[Missing<'_>]) -> Option<String> {
     let (first, others) = missing.split_first().filter(|(_, others)| !others.is_empty())?;
     let mut common = first.namespaces();

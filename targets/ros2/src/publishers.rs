@@ -1,4 +1,4 @@
-//! Detects a second publisher of the odometry from the messages that arrive.
+//! Detects, from the messages that arrive, that the odometry has a second publisher.
 
 use std::time::Duration;
 
@@ -6,14 +6,14 @@ use crate::fault::Fault;
 use crate::graph::Graph;
 use crate::source::{Input, TopicPurpose};
 
-/// Minimum time for which the search at the start waits for messages of a second publisher on the graph.
+/// Minimum time for which the search at the start waits for messages of a second publisher that is on the graph.
 const WATCH: Duration = Duration::from_secs(1);
 
 /// Publishers of the odometry from which messages have arrived.
 ///
-/// A killed program stays on the graph for some time: after a restart of the robot there are two publishers, of which
-/// the first is silent. If instead two programs publish different poses at the same time, the first publisher sends
-/// again after the second.
+/// A killed program stays on the graph for some time. After a restart of the robot, there are therefore two publishers,
+/// and the first one is silent. If, however, two programs publish different poses at the same time, the first publisher
+/// sends again after the second one.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Publishers {
     /// Publishers before the last one.
@@ -59,13 +59,14 @@ impl Publishers {
     }
 }
 
-/// Waiting period for messages of a second publisher: the time at which it was first seen on the graph; `None` before.
+/// Waiting period for messages of a second publisher. Contains the time at which the second publisher was first seen on
+/// the graph; `None` before that.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Probation(Option<Duration>);
 
 impl Probation {
-    /// Returns `true` if `input` has at most one publisher on the graph, or if the waiting time for messages of a
-    /// second one has passed at the time `now`.
+    /// Returns `true` if `input` has at most one publisher on the graph, or if the waiting period for messages of a
+    /// second publisher is over at the time `now`.
     pub(crate) fn is_over(&mut self, input: &Input, graph: &Graph, now: Duration) -> bool {
         if graph.publishers(input) < 2 {
             return true;

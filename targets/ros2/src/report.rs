@@ -15,7 +15,7 @@ pub struct StateMessages {
     pub diagnostics: Payload,
 }
 
-/// State of a plan, as published.
+/// State of a plan, in the form in which it is published.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PlanState {
     /// Status of the plan: `running`, `over` or `stopped`.
@@ -26,7 +26,7 @@ pub struct PlanState {
     plan: String,
     /// Law of the current atom.
     law: String,
-    /// Place of the current atom in the plan.
+    /// Position of the current atom in the plan.
     place: String,
     /// Reason why the atom runs, or why the plan has ended.
     cause: String,

@@ -5,12 +5,12 @@ use mdle_runtime::{Meters, Mount, Pose, Radians, SONARS, SonarId};
 use crate::config::Config;
 use crate::messages::LaserScan;
 
-/// Numbers of the virtual sonars that point ahead.
+/// Indices of the virtual sonars that point ahead.
 const AHEAD: [usize; 3] = [SONARS - 1, 0, 1];
-/// Marks a direction ahead for which a ray has been found.
+/// Value that marks a direction ahead for which a ray has been found.
 const SEEN: usize = SONARS;
 
-/// Result of a scan in one direction.
+/// Result of a scan in one of the sixteen directions.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Direction {
     /// No ray in this direction was valid.
@@ -18,7 +18,7 @@ pub enum Direction {
     Unknown,
     /// All valid rays in this direction met no obstacle.
     Free,
-    /// At least one ray in this direction met an obstacle; the nearest obstacle counts.
+    /// At least one ray in this direction met an obstacle; only the nearest obstacle is used.
     Echo {
         /// Distance of the obstacle from the ring of virtual sonars, in metres.
         range: Meters,
@@ -37,7 +37,7 @@ pub struct Scanner {
 }
 
 impl Scanner {
-    /// Returns the scanner that `config` describes.
+    /// Creates the scanner that `config` describes.
     #[must_use]
     pub fn of(config: &Config) -> Self {
         let (x, y, theta) = (Meters(config.scan_x), Meters(config.scan_y), Radians(config.scan_yaw));
@@ -79,12 +79,13 @@ impl Scanner {
         AHEAD.iter().any(|sonar| directions.get(*sonar).is_some_and(|direction| *direction != Direction::Unknown))
     }
 
-    /// Returns the positions of obstacles in the body's frame, in metres ahead of and to the left of the centre.
+    /// Returns the positions of obstacles in the body's frame, as distances ahead and to the left of the centre, in
+    /// metres.
     pub fn obstacles<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (f64, f64)> + 's {
         self.rays(scan).filter_map(|(angle, range)| Some(self.place(angle, range?)))
     }
 
-    /// Checks that `scan` has rays, valid or not, in the three directions ahead.
+    /// Checks that `scan` has rays, whether valid or not, in the three directions ahead.
     ///
     /// # Errors
     /// Returns the reason, as the end of a sentence about the scan, if a direction has no ray.
@@ -119,7 +120,7 @@ impl Scanner {
         })
     }
 
-    /// Returns the angle of the ray with this number in the body's frame.
+    /// Returns the angle, in the body's frame, of the ray with this index.
     fn angle(&self, scan: &LaserScan, number: usize) -> Radians {
         Radians(self.mount.theta.0 + f64::from(scan.angle_min) + f64::from(scan.angle_increment) * number as f64)
     }
@@ -130,8 +131,8 @@ impl Scanner {
         (self.mount.x.0 + range * cos, self.mount.y.0 + range * sin)
     }
 
-    /// Returns the valid rays of `scan`: the angle in the body's frame, and the range in metres or `None` if the ray
-    /// met no obstacle.
+    /// Returns the valid rays of `scan`. For each ray, returns the angle in the body's frame, and the range in metres;
+    /// `None` if the ray met no obstacle.
     fn rays<'s>(&'s self, scan: &'s LaserScan) -> impl Iterator<Item = (Radians, Option<f64>)> + 's {
         let (least, most) = (f64::from(scan.range_min), f64::from(scan.range_max));
         scan.ranges.iter().enumerate().filter_map(move |(number, range)| {

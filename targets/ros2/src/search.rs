@@ -21,19 +21,20 @@ use crate::stamp::ros_now;
 
 /// Interval between two checks of the graph for topics.
 const GRAPH: Duration = Duration::from_millis(50);
-/// Minimum time without a message from a publisher on the graph, after which that publisher does not appear to have
-/// found this participant.
+/// Time without a message from a publisher on the graph after which it is assumed that this publisher has not found the
+/// participant.
 const DEAF: Duration = Duration::from_secs(3);
 
-/// Minimum time for which all messages of a topic are rejected before the run ends.
+/// Minimum time for which all messages of a topic have been rejected before the run ends.
 const REJECTED: Duration = Duration::from_secs(1);
 
-/// Start of the period in which a condition has held without interruption; `None` if it does not hold.
+/// Start of the current period in which a condition has been true without interruption; `None` if it is not true.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lasting(Option<Duration>);
 
 impl Lasting {
-    /// Returns the time for which the condition has held; `holds` is `true` if it holds at the time `now`.
+    /// Returns the time for which the condition has been true. `holds` is `true` if the condition is true at the time
+    /// `now`.
     fn time(&mut self, holds: bool, now: Duration) -> Duration {
         let since = *self.0.get_or_insert(now);
         self.0 = holds.then_some(since);
@@ -53,10 +54,10 @@ impl Search<'_> {
     /// Waits until all topics of the robot have been found, and returns the writer of velocity commands. Returns `None`
     /// if `may_rejoin` is `true` and a publisher of a topic sends no message.
     ///
-    /// RustDDS sends to an address of this computer's loopback interface only after it has received a datagram from
-    /// that participant itself. If the participant was first announced in a datagram of another participant of its
-    /// program, RustDDS never answers it, and the participant learns of no reader of the driver. A new participant of
-    /// the driver is announced again.
+    /// RustDDS sends to an address of this computer's loopback interface only after it has received a datagram from the
+    /// participant at this address itself. If that participant was first announced in a datagram of another participant
+    /// of its program, RustDDS never answers it, so the participant never learns of the driver's readers. In this case,
+    /// a new participant of the driver helps, because the other one is announced to it again.
     ///
     /// # Errors
     /// Fails if topics are missing, or if the middleware does not work.
@@ -78,7 +79,7 @@ impl Search<'_> {
         found
     }
 
-    /// Waits as [`Search::find`] does; if it fails, `commands` is the writer, if there is one.
+    /// Waits as [`Search::find`] does. If the wait fails, `commands` contains the writer, if it has been created.
     fn seek(
         &self,
         (participant, readers): (&Participant, &[(Input, Reader)]),
@@ -161,7 +162,7 @@ impl Search<'_> {
     }
 }
 
-/// Returns a sentence for each missing topic without which the plan cannot begin.
+/// Returns a sentence for each missing topic that the plan needs before it can begin.
 fn missing(sensing: &Sensing, graph: &Graph) -> Vec<String> {
     let mut missing: Vec<_> = sensing.awaited().map(|(input, why)| graph.about_input(input, why)).collect();
     let is_awaited = |input: &Input| sensing.awaited().any(|(awaited, _)| awaited == input);
@@ -175,8 +176,8 @@ fn limit_of(input: &Input) -> Duration {
     Duration::from_millis(input.limit)
 }
 
-/// Returns the maximum time to wait for the first message of a topic that has a publisher; `None` if no such topic is
-/// silent.
+/// Returns the maximum time to wait for the first message of a topic that has a publisher; `None` if all topics with
+/// publishers have sent messages.
 fn patience(sensing: &Sensing, graph: &Graph) -> Option<Duration> {
     let silent = sensing.awaited().filter(|(input, left_out)| left_out.is_empty() && graph.is_offered(input));
     silent.map(|(input, _)| limit_of(input).max(DEAF)).min()

@@ -22,11 +22,12 @@ use crate::odometer::Odometer;
 use crate::scan::{Direction, Scanner, sonar_at};
 use crate::source::{Input, TopicPurpose, has_variance, inputs};
 
-/// A topic, with information about its last accepted message.
+/// A topic, and data about its last accepted message.
 #[derive(Debug, Clone)]
 struct Seen {
     input: Input,
-    /// Time at which the last message was accepted, from which its age is computed; `None` before the first message.
+    /// Time at which the last message was accepted; its age is computed from this time. `None` before the first
+    /// message.
     at: Option<Duration>,
     /// Time stamp of the last accepted message, in nanoseconds.
     stamp: i64,
@@ -34,7 +35,7 @@ struct Seen {
     left_out: String,
 }
 
-/// Data that all topics of a robot have reported.
+/// Data that the messages of all topics of a robot have reported.
 #[derive(Debug, Clone)]
 pub struct Sensing {
     config: Config,
@@ -45,7 +46,7 @@ pub struct Sensing {
     /// Time of the exchange that received the last odometry.
     positioned: Nanos,
     pings: [Pings; SONARS],
-    /// Time of the last valid ray in each direction, from which the age of its ping is computed.
+    /// Time of the last valid ray in each direction; the age of the direction's ping is computed from this time.
     known: [Duration; SONARS],
     switches: u32,
     supply: Supply,
@@ -56,7 +57,7 @@ pub struct Sensing {
 }
 
 impl Sensing {
-    /// Returns the data of a robot that has sent no message yet.
+    /// Creates the data of a robot that has sent no message yet.
     ///
     /// # Errors
     /// Returns the reason, as a sentence, if the configuration has an invalid topic name.
@@ -81,7 +82,7 @@ impl Sensing {
     /// Stores a message of the topic with this index. The age of messages is computed from `now`; `at` is the time of
     /// the output.
     ///
-    /// A message that cannot be read is rejected; without further messages, the topic's data become stale.
+    /// A message that cannot be decoded is rejected. Without further messages, the topic's data become stale.
     ///
     /// # Errors
     /// Fails if the odometry is invalid, has jumped, or has gone back in time.
@@ -173,7 +174,7 @@ impl Sensing {
         if is_echo || is_free { Ok(range) } else { Err(format!("its range is {}", range.range)) }
     }
 
-    /// Stores a valid range. An infinite range, or one beyond the sensor's maximum, means that nothing echoed.
+    /// Stores a valid range. A range that is infinite or beyond the sensor's maximum means that there was no echo.
     fn take_range(&mut self, number: usize, message: &Range, at: Nanos) -> i64 {
         let pose = self.pose_of(&message.header);
         if let Some(sensor) = self.config.ranges.0.get(number) {
@@ -212,16 +213,16 @@ impl Sensing {
         self.seen.iter().map(|seen| &seen.input)
     }
 
-    /// Returns the topics that lack a first valid message, each with the reason why the last message was rejected. A
-    /// topic that reports only changes is omitted unless its message was rejected.
+    /// Returns the topics from which no valid message has arrived, each with the reason why the last message was
+    /// rejected. A topic that reports only changes is omitted, unless its message was rejected.
     pub fn awaited(&self) -> impl Iterator<Item = (&Input, &str)> {
         let may_wait = |seen: &Seen| reports_changes(&seen.input) && seen.left_out.is_empty();
         let awaited = self.seen.iter().filter(move |seen| seen.at.is_none() && !may_wait(seen));
         awaited.map(|seen| (&seen.input, seen.left_out.as_str()))
     }
 
-    /// Returns two time stamps in nanoseconds: of the last odometry, and of the oldest message among the scan and the
-    /// ranges.
+    /// Returns two time stamps in nanoseconds: the time stamp of the last odometry, and the time stamp of the oldest
+    /// message among the scan and the ranges.
     #[must_use]
     pub fn stamps(&self) -> (i64, i64) {
         let looks = |source| match source {
@@ -281,8 +282,8 @@ impl Sensing {
     }
 }
 
-/// Returns `true` if a topic reports only changes: once it has a publisher, the plan may begin without a message of
-/// this topic.
+/// Returns `true` if a topic reports only changes. The plan may then begin without a message of this topic, once the
+/// topic has a publisher.
 fn reports_changes(input: &Input) -> bool {
     match input.source {
         TopicPurpose::Bumper | TopicPurpose::Battery => input.limit == 0,

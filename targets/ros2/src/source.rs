@@ -1,4 +1,4 @@
-//! The topics that the driver reads according to the configuration, with their types.
+//! The topics that the driver reads, and their types, as the configuration determines them.
 
 use crate::choices::{BumperSource, Distribution, RANGES};
 use crate::config::{Config, has_topic};
@@ -21,8 +21,9 @@ pub enum TopicPurpose {
 }
 
 impl TopicPurpose {
-    /// Returns the configuration key that names the topic, and `true` if the only topic of its type may be proposed. A
-    /// bumper topic may not be proposed, because its type is common. Returns `None` for the clock, whose name is fixed.
+    /// Returns the configuration key that names the topic, and `true` if the only topic of its type on the graph may be
+    /// proposed. A bumper topic must not be proposed, because its type is common. Returns `None` for the clock, because
+    /// its topic has a fixed name.
     #[must_use]
     pub const fn key(self) -> Option<(&'static str, bool)> {
         match self {
@@ -49,7 +50,8 @@ pub struct Input {
     pub limit: u64,
 }
 
-/// Returns the topics that `config` reads, in the order in which a turn reads their messages.
+/// Returns the topics that the driver reads according to `config`, in the order in which a turn processes their
+/// messages.
 ///
 /// # Errors
 /// Returns a sentence if a topic name is invalid.

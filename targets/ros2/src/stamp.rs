@@ -1,4 +1,4 @@
-//! Time stamps of ROS messages outside a simulation: the system's time.
+//! Time stamps of ROS messages outside of a simulation, which contain the system's time.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 

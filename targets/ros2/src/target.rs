@@ -101,12 +101,12 @@ impl mdle_host::Target for Target {
     }
 }
 
-/// Returns the file name given with `--config`; `None` if the option is absent.
+/// Returns the file that the option `--config` names; `None` if the option is not given.
 fn config(matches: &ArgMatches) -> Option<&Path> {
     matches.get_one::<PathBuf>("config").map(PathBuf::as_path)
 }
 
-/// Returns the configuration that the options select.
+/// Reads the configuration that the options select.
 fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {
     Configured::read(config(matches)).map_err(Refusal::Usage)
 }

@@ -6,7 +6,8 @@ use crate::number;
 /// Number of sonars.
 const SONARS: usize = 16;
 
-/// A command. Lengths are tenths of an inch, speeds tenths of an inch per second, angles tenths of a degree.
+/// A command. Lengths are in tenths of an inch, speeds in tenths of an inch per second, and angles in tenths of a
+/// degree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command {
     /// Report the state (GS).
@@ -19,7 +20,8 @@ pub enum Command {
     Zero,
     /// Stop if no command arrives for this number of seconds; 0 switches the watchdog off (CONF_TM).
     Watchdog(u8),
-    /// Ping with these sonars, one after the other, at an interval given in units of 4 ms; 255 ends the list (CONF_SN).
+    /// Ping with these sonars, one after the other; 255 ends the list (CONF_SN). The first value is the interval
+    /// between two pings, in units of 4 ms.
     Sonars(u8, [u8; SONARS]),
     /// Maximum accelerations of the right and the left wheel, in tenths of an inch per second squared (AC).
     Accelerations(u16, u16),
@@ -28,7 +30,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Returns the type of the command on the line; its answer has the same type.
+    /// Returns the number that identifies the type of the command on the line. The answer has the same type.
     #[must_use]
     pub const fn kind(&self) -> u8 {
         match self {

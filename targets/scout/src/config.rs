@@ -1,4 +1,4 @@
-//! Configuration of a Scout: a TOML file, the defaults, and the source of each value.
+//! Configuration of a Scout: values from a TOML file and defaults, and the source of each value.
 
 use std::time::Duration;
 
@@ -39,7 +39,7 @@ mdle_serial::configuration! {
 }
 
 impl Config {
-    /// Checks the conditions that the range of a single value cannot express.
+    /// Checks conditions on the values that cannot be expressed as the range of a single value.
     fn check(&self) -> Result<(), String> {
         if !self.gap.is_multiple_of(4) {
             return Err(format!("`gap` is {}, and the robot counts it in steps of 4 ms", self.gap));
@@ -53,7 +53,7 @@ impl Config {
         Ok(())
     }
 
-    /// Returns the order of the sonars in the robot's format, in which unused entries are 255.
+    /// Returns the order of the sonars in the robot's format. In this format, unused entries are 255.
     #[must_use]
     pub fn order(&self) -> [u8; 16] {
         std::array::from_fn(|place| self.sonars.get(place).copied().unwrap_or(255))

@@ -1,5 +1,5 @@
-//! The driver of a Scout, as a kinetic state machine: each input is a velocity command, and the answer to it is the
-//! output (paper, Eq. 1).
+//! The driver of a Scout, as a kinetic state machine (paper, Eq. 1). Each input is a velocity command; the output comes
+//! from the answer to it.
 
 use std::time::{Duration, Instant};
 
@@ -20,22 +20,24 @@ use crate::wheels::{self, WHEEL_BASE};
 
 /// Radius of the body, in metres.
 const RADIUS: Meters = Meters(0.205);
-/// Number of consistent pings that confirm a free path on a robot whose sonars fire in turn.
+/// Number of pings that must agree before a direction is treated as free, on a robot whose sonars fire one after the
+/// other.
 const CONFIRMATION: usize = 2;
-/// Minimum time to wait for the robot to come to rest before its motors are released; from 1 m/s it needs 0.5 s.
+/// Minimum time to wait for the robot to come to rest before its motors are released. A robot that drives at 1 m/s
+/// needs 0.5 s.
 const STOPPING: Duration = Duration::from_millis(600);
 /// Timeout for the last answer of a robot that has not answered before.
 const ANSWER: Duration = Duration::from_millis(150);
-/// Maximum jitter of the speed of a wheel that holds its position, in tenths of an inch per second.
+/// Maximum fluctuation, in tenths of an inch per second, of the speed of a wheel that holds its position.
 const JITTER: u16 = 4;
 /// Interval at which the driver checks whether the robot is at rest.
 const LOOK: Duration = Duration::from_millis(20);
 /// Interval at which the stop command is repeated to a robot that does not answer.
 const AGAIN: Duration = Duration::from_millis(100);
-/// Minimum timeout for setting the position to zero; newer versions of the manufacturer's library wait much longer.
+/// Minimum timeout for setting the position to zero. Newer versions of the manufacturer's library wait much longer.
 const ZEROING: Duration = Duration::from_secs(5);
 
-/// Driver of a Scout that answers.
+/// Driver of a Scout. The robot has begun to answer.
 #[derive(Debug)]
 pub struct Scout {
     line: ScoutLine,
@@ -45,7 +47,7 @@ pub struct Scout {
     ring: Ring,
     /// `true` if the new order of the sonars has not been sent to the robot yet.
     is_reordered: bool,
-    /// Drift of the odometry, measured at walls.
+    /// Drift of the odometry heading, estimated from walls.
     compass: Compass,
     freshness: Freshness,
     obedience: Obedience,
@@ -56,15 +58,15 @@ pub struct Scout {
     pub(crate) paths: PathStore,
 }
 
-/// Returns the transmission time of a turn: a command, and the state in its answer.
+/// Returns the time for transmitting the data of a turn: a command, and the answer with the state.
 pub(crate) fn turn_takes() -> Duration {
     let command = Command::Velocities(0, 0).frame().bytes().len();
     time_of(command + state::LENGTH + frame::AROUND, SPEED)
 }
 
 impl Scout {
-    /// Opens the line and prepares the robot. Then the robot is at rest at position zero, its watchdog is armed, and
-    /// each sonar has pinged.
+    /// Opens the line and prepares the robot. Afterwards, the robot is at rest at position zero, its watchdog is armed,
+    /// and each sonar has pinged.
     ///
     /// # Errors
     /// Fails if the line or the robot is missing, or if the robot's emergency stop is pressed.
@@ -132,7 +134,7 @@ impl Scout {
         Ok(())
     }
 
-    /// Sends the order in which the sonars ping.
+    /// Sends the order in which the sonars have to ping.
     fn order_sonars(&mut self) -> Result<(), Fault> {
         self.is_reordered = false;
         self.command(Command::Sonars((self.config.gap / 4) as u8, self.config.order())).map(drop)
@@ -180,8 +182,8 @@ impl Scout {
         }
     }
 
-    /// Returns `true` if the robot's watchdog has stopped it since the last command: the robot must not move again
-    /// before the user has been informed.
+    /// Returns `true` if the robot's watchdog has stopped the robot since the last command. The robot must then not
+    /// move again before the user has been informed.
     fn has_overslept(&self) -> bool {
         self.clock == Clock::Wall && self.commanded.is_some_and(|last| last.elapsed() >= self.watchdog())
     }
@@ -204,7 +206,7 @@ impl Scout {
     }
 }
 
-/// Returns the battery's voltage and state. The battery feeds both supplies, and the lower voltage counts.
+/// Returns the battery's voltage and state. The battery feeds both supplies; the lower voltage of the two is used.
 fn supply(state: &State, config: &Config) -> Supply {
     let [cpu, motor] = state.volts();
     let battery = Volts(cpu.0.min(motor.0));

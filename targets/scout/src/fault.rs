@@ -1,4 +1,4 @@
-//! Faults of a Scout, each with a sentence that tells the operator how to fix it.
+//! Faults of a Scout. Each has a message that explains to the operator how to correct the fault.
 
 use std::fmt;
 
@@ -6,16 +6,17 @@ use mdle_serial::LineFault;
 
 use crate::frame::Garbled;
 
-/// Reason why the robot cannot be driven, or can no longer be driven.
+/// Reason why the robot is not ready to drive, or can no longer be driven.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
-    /// The run was asked to end while the robot was being prepared. Contains a fault if the robot could not be stopped.
+    /// The run was asked to end while the robot was being prepared. Contains the fault if the robot could not be
+    /// stopped.
     Ended(Option<Box<Self>>),
     /// The line cannot be opened or is closed, or no answer arrived in time.
     Line(LineFault),
     /// The received bytes are not a frame.
     Garbled(Garbled),
-    /// The answer does not have the type of the command.
+    /// The type of the answer differs from the type of the command.
     Wrong {
         /// Type of the command.
         asked: u8,
@@ -24,19 +25,20 @@ pub enum Fault {
     },
     /// The robot refused a command of this type.
     Refused(u8),
-    /// The answer has the right type, but has only this number of bytes, too few for a state.
+    /// The answer has the right type, but is too short for a state; contains the number of its bytes.
     Short(usize),
     /// The robot's emergency stop is pressed.
     EmergencyStop,
-    /// The robot's clock has not advanced for this number of milliseconds: the robot repeats the same state.
+    /// The robot repeats the same state: its clock has not advanced for this number of milliseconds.
     Hung(u64),
-    /// The sonars no longer ping: their ranges have not changed although the robot has moved.
+    /// The sonars no longer ping, because their ranges have not changed although the robot has moved.
     Frozen,
-    /// The robot has moved faster than commanded, or in the opposite direction, for this number of milliseconds.
+    /// The robot has moved faster than commanded, or in the opposite direction, for too long. Contains this time in
+    /// milliseconds.
     Disobeys(u64),
-    /// Consecutive positions are too far from each other.
+    /// Consecutive reported positions are too far from each other.
     Leaps,
-    /// The robot has stopped itself because no command arrived for this number of seconds.
+    /// The robot has stopped itself, because no command arrived for this number of seconds.
     Overslept(u8),
     /// The robot has not come to rest after the command to stop.
     Moves,

@@ -7,20 +7,21 @@ use arrayvec::ArrayVec;
 pub(crate) const START: u8 = 0x01;
 /// Last byte of each frame.
 const END: u8 = 0x5C;
-/// Number of bytes in a frame besides its arguments: start, two bytes of length, type, checksum, end.
+/// Number of bytes in a frame in addition to its arguments: start, two bytes of length, type, checksum, and end.
 pub(crate) const AROUND: usize = 6;
-/// Maximum accepted length of an answer. Real answers are far shorter; the limit avoids waiting for a corrupted length.
+/// Maximum length of an answer. Real answers are far shorter. With this limit, the driver does not wait long for the
+/// rest of an answer whose length was corrupted.
 const LONGEST: usize = 255;
-/// Maximum number of argument bytes: the length includes type and checksum.
+/// Maximum number of argument bytes. The length of a frame also includes its type and checksum.
 const MOST: usize = LONGEST - 2;
 
 /// Arguments of a frame, stored without heap allocation.
 pub type Arguments = ArrayVec<u8, MOST>;
 
-/// A received frame: its type, and its arguments as transmitted.
+/// A received frame, with its type and with its arguments as transmitted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// Type of the command that the frame answers or contains.
+    /// Type of the command that the frame contains or answers.
     pub kind: u8,
     /// Arguments of the frame.
     pub arguments: Arguments,
@@ -29,13 +30,13 @@ pub struct Frame {
 /// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// The first byte is this byte, not the start byte of a frame.
+    /// The first byte is not the start byte of a frame, but this byte.
     Start(u8),
-    /// The frame has this length, which is invalid.
+    /// The frame declares this length, which is invalid.
     Length(u16),
-    /// Checksum mismatch: checksum of the received bytes, and checksum in the frame.
+    /// The checksum is wrong. Contains the checksum of the received bytes, and the checksum in the frame.
     Sum(u8, u8),
-    /// The byte after the checksum is this byte, not the end byte of a frame.
+    /// The byte after the checksum is not the end byte of a frame, but this byte.
     End(u8),
 }
 
@@ -50,7 +51,7 @@ impl core::fmt::Display for Garbled {
     }
 }
 
-/// Returns the checksum of `bytes`: their sum modulo 256.
+/// Returns the checksum of `bytes`, which is their sum modulo 256.
 fn sum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
 }
@@ -68,7 +69,8 @@ impl Frame {
         bytes
     }
 
-    /// Returns the frame at the beginning of `bytes` and its length in bytes; `None` if the frame is incomplete.
+    /// Decodes the frame at the beginning of `bytes`. Returns the frame and its length in bytes; `None` if the frame is
+    /// incomplete.
     ///
     /// # Errors
     /// Fails if `bytes` is not the beginning of a valid frame.

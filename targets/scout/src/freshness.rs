@@ -1,9 +1,10 @@
-//! Detects stale data: a Scout's clock has to advance, and its sonars' ranges have to change while the robot moves. See
-//! docs/src/reference/protocols.md, 1.8.
+//! Detects stale data. A Scout's clock has to advance, and the ranges of its sonars have to change while the robot
+//! moves. See docs/src/reference/protocols.md, 1.8.
 //!
-//! A state answers a command and is as recent as the command, unless the controller repeats an old state, which the
-//! clock in the state reveals. The state does not contain the times of the pings. But while the robot turns, or moves
-//! towards or away from an object that a sonar hears, the range of at least one sonar changes if the sonars ping.
+//! A state answers a command and is as recent as the command, unless the controller repeats an old state; the clock in
+//! the state reveals this. The state does not contain the times of the pings. However, if the sonars ping, the range of
+//! at least one sonar changes while the robot turns, or while it moves towards or away from an object that a sonar
+//! detects.
 
 use mdle_runtime::{Nanos, Pose, Radians};
 
@@ -13,27 +14,28 @@ use crate::state::State;
 
 /// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
-/// Angle, in radians, by which the robot may turn before at least one range must have changed: each sonar then faces in
-/// the direction in which the fourth sonar after it faced before.
+/// Maximum angle, in radians, by which the robot may turn before at least one range must have changed. After this
+/// angle, each sonar has the direction that the fourth sonar after it had before.
 const TURN: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Last data that differed from the previous data, and the robot's motion since then.
+/// The last data that differed from the previous data, and the motion of the robot since then.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Freshness {
-    /// Last new time of the robot's clock, and the time at which it was received; `None` before the first state.
+    /// Time of the robot's clock when it last advanced, and the time at which this was received; `None` before the
+    /// first state.
     clock: Option<(u32, Nanos)>,
     sonars: [u8; 16],
     /// Last pose of the robot.
     pose: Pose,
-    /// Distance driven since a sonar's range last changed, in metres.
+    /// Distance that the robot has driven since a sonar's range last changed, in metres.
     way: f64,
-    /// Angle turned since a sonar's range last changed, in radians.
+    /// Angle by which the robot has turned since a sonar's range last changed, in radians.
     turn: f64,
 }
 
 impl Freshness {
-    /// Checks the state that arrived at `at` and reports the robot at `pose`. Returns the time for which the robot's
-    /// clock has not advanced; zero if the configuration sets no limit for it.
+    /// Checks the state `state`, which arrived at the time `at`; `pose` is the pose in this state. Returns the time for
+    /// which the robot's clock has not advanced; zero if the configuration sets no limit for it.
     ///
     /// # Errors
     /// Fails if the clock has not advanced, or if the sonars' ranges have not changed, for longer than the
@@ -61,7 +63,7 @@ impl Freshness {
     }
 }
 
-/// Returns `true` if this sonar has heard an echo.
+/// Returns `true` if this sonar has received an echo.
 fn hears(state: &State, sonar: u8) -> bool {
     state.sonars.get(usize::from(sonar)).is_some_and(|range| *range != NOTHING)
 }

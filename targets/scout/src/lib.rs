@@ -1,7 +1,7 @@
 //! The target for the Nomadic Super Scout II: the serial protocol, the driver, and the alphabet.
 //!
-//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], the quarks that this robot has.
-//! Tests and tools use the protocol ([`Command`], [`Frame`], [`State`]) and the driver, [`Scout`].
+//! Generated code uses [`Target`], on which the host runs a plan, and [`alphabet`], which contains the quarks of this
+//! robot. Tests and tools use the protocol ([`Command`], [`Frame`], [`State`]) and the driver, [`Scout`].
 #![forbid(unsafe_code)]
 
 pub mod alphabet;

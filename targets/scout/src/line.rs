@@ -11,7 +11,7 @@ use crate::reader::{CHUNK, Reader};
 
 /// Speed of the line in bits per second, 8N1.
 pub(crate) const SPEED: u32 = 38_400;
-/// Silence that ends an answer: the transmission time of more than forty bytes.
+/// Time of silence that ends an answer. More than forty bytes could be transmitted in this time.
 const QUIET: Duration = Duration::from_millis(20);
 /// Type of the answer to a rejected command.
 const REFUSED: u8 = 8;
@@ -24,7 +24,7 @@ pub(crate) struct ScoutLine {
 }
 
 impl ScoutLine {
-    /// Opens the serial port `device`, or `tcp:ADDRESS:PORT`. Nothing is sent.
+    /// Opens the serial port `device`, or connects to `tcp:ADDRESS:PORT`. Sends nothing.
     ///
     /// # Errors
     /// Fails if the device is missing, busy or not a terminal, or if no program listens at the address.
@@ -32,10 +32,10 @@ impl ScoutLine {
         Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, reader: Reader::default() })
     }
 
-    /// Sends `command` and waits for its answer until `deadline`. Discards bytes received earlier, because a Scout
-    /// sends bytes only in answer to a command, and skips noise around the answer. After an answer with a wrong
-    /// checksum, the command is sent once more, since every command can be repeated. After silence it is not repeated:
-    /// a late answer would be mistaken for the answer to the next command.
+    /// Sends `command`, and waits for its answer until `deadline`. Discards bytes that were received earlier, because a
+    /// Scout sends bytes only in answer to a command; also skips noise around the answer. After an answer with a wrong
+    /// checksum, the command is sent once more, because every command can be repeated. After silence, it is not
+    /// repeated, because a late answer would be mistaken for the answer to the next command.
     ///
     /// # Errors
     /// Fails if the line is closed, or if no complete answer arrived before the deadline.
@@ -43,7 +43,7 @@ impl ScoutLine {
         self.ask_while(command, deadline, &|| Ok(()))
     }
 
-    /// Sends `command` and waits for its answer as [`ScoutLine::ask`] does; stops waiting when `go_on` returns an error.
+    /// Sends `command`, and waits for its answer as [`ScoutLine::ask`] does. Stops waiting when `go_on` returns an error.
     ///
     /// # Errors
     /// Fails if [`ScoutLine::ask`] or `go_on` fails.
@@ -69,13 +69,13 @@ impl ScoutLine {
     /// Sends `command` without waiting for the answer.
     ///
     /// # Errors
-    /// Fails if the line is closed, or accepts no bytes until `deadline`.
+    /// Fails if the line is closed, or if it accepts no bytes before `deadline`.
     pub(crate) fn say(&mut self, command: &Command, deadline: Instant) -> Result<(), Fault> {
         Ok(self.line.write(&command.frame().bytes(), deadline)?)
     }
 
     /// Sends `command` once. A malformed answer of full length is reported as soon as the line is quiet; any other
-    /// error, at the deadline.
+    /// error is reported at the deadline.
     fn ask_once(
         &mut self,
         command: &Command,
@@ -112,8 +112,8 @@ impl ScoutLine {
         }
     }
 
-    /// Returns the fault for a missing answer to `command`; `wrong` is the type of an answer to another command, if
-    /// such an answer arrived.
+    /// Returns the fault about a missing answer to `command`. If an answer to another command arrived, `wrong` is its
+    /// type.
     fn unanswered(&self, command: &Command, wrong: Option<u8>) -> Fault {
         let wrong = wrong.map(|answered| Fault::Wrong { asked: command.kind(), answered });
         let garbled = self.reader.garbled().map(Fault::Garbled);
@@ -133,7 +133,7 @@ impl ScoutLine {
         Ok(())
     }
 
-    /// Reads the bytes that have arrived; returns `true` if there were bytes.
+    /// Reads the bytes that have arrived. Returns `true` if there were any bytes.
     fn take_in(&mut self) -> Result<bool, Fault> {
         let mut chunk = [0; CHUNK];
         let count = self.line.read(&mut chunk)?;

@@ -11,7 +11,7 @@ pub(crate) fn signed(number: i16) -> [u8; 2] {
     [low, if number < 0 { high | SIGN } else { high }]
 }
 
-/// Returns the number in two bytes. Zero has two representations.
+/// Decodes the number in two bytes. Zero has two representations.
 #[must_use]
 pub(crate) fn read([low, high]: [u8; 2]) -> i16 {
     // Without the sign bit, the value is below 32768.

@@ -9,15 +9,15 @@ use crate::wheels::UNIT;
 /// Number of different values in sign-magnitude form, from -32767 to 32767.
 const NUMBERS: i32 = 65_535;
 
-/// Distance between two states, in metres, by which a step may exceed what the robot can drive in the time between
-/// them; a larger distance is a leap.
+/// Distance, in metres, by which a step between two states may exceed the distance that the robot can drive in the time
+/// between them. A larger step is a leap.
 const LEAP: f64 = 1.0;
 /// Maximum ratio of a wheel's speed to its commanded speed.
 const FASTER: f64 = 2.0;
-/// Maximum number by which leaps may exceed normal steps; beyond it, the positions are unusable.
+/// Maximum number by which leaps may exceed normal steps. If they exceed it further, the positions are unusable.
 const LEAPS: u8 = 4;
 
-/// Odometry that follows the wrapping positions from state to state.
+/// Odometry that adds up the changes of the wrapping positions from state to state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Odometer {
     last: Option<(i16, i16)>,
@@ -28,9 +28,9 @@ pub(crate) struct Odometer {
 }
 
 impl Odometer {
-    /// Returns the robot's pose in the state that arrived at `at`; no wheel is commanded to move faster than `fastest`
-    /// m/s. A leap does not change the pose. Between two states, the robot has to move less than half of the range at
-    /// which positions wrap.
+    /// Returns the robot's pose in the state `state`, which arrived at the time `at`. The commands never exceed the
+    /// wheel speed `fastest`, in m/s. A leap does not change the pose. Between two states, the robot must move less
+    /// than half of the range at which positions wrap.
     ///
     /// # Errors
     /// Fails if the positions leap repeatedly.
@@ -52,7 +52,7 @@ impl Odometer {
     }
 }
 
-/// Returns the difference between two consecutive positions; the second may have wrapped.
+/// Returns the difference between two consecutive positions; the second may have overflowed and wrapped around.
 fn unwrapped(from: i16, to: i16) -> i64 {
     let way = i32::from(to) - i32::from(from);
     let half = NUMBERS / 2;

@@ -1,18 +1,18 @@
-//! Finds answers in received bytes: bytes that cannot begin a frame are skipped one by one.
+//! Finds answers in received bytes. Bytes that cannot begin a frame are skipped one by one.
 
 use crate::frame::{Frame, Garbled, START};
 
 /// Maximum number of bytes that are read from the line at once.
 pub(crate) const CHUNK: usize = 512;
 
-/// Bytes received since the last command, from which frames are read.
+/// Bytes that have been received since the last command; the reader finds frames in them.
 #[derive(Debug)]
 pub struct Reader {
-    /// Bytes that have not been read as a frame: empty, or beginning with the start byte of a frame.
+    /// Bytes that have not been read as a frame. They are empty, or begin with the start byte of a frame.
     waiting: Vec<u8>,
     /// First error in the bytes since the last call of `clear`; `None` if there is no error.
     garbled: Option<Garbled>,
-    /// `true` after a malformed frame of the right length.
+    /// `true` after a malformed frame whose length was right.
     was_whole: bool,
 }
 
@@ -62,8 +62,8 @@ impl Reader {
     }
 
     /// Removes and returns a frame of type `kind` that follows the incomplete beginning of another frame, which may be
-    /// noise; `None` if there is no such frame. Call it only when no more bytes arrive: otherwise a part of a valid
-    /// frame could be mistaken for a frame.
+    /// noise; `None` if there is no such frame. Must be called only when no more bytes arrive, because otherwise a part
+    /// of a valid frame could be mistaken for a frame.
     pub fn after_false_start(&mut self, kind: u8) -> Option<Frame> {
         let found = (1..self.waiting.len()).find_map(|place| {
             let frame = Frame::read(self.waiting.get(place..)?).ok().flatten();
@@ -80,7 +80,7 @@ impl Reader {
         self.garbled
     }
 
-    /// Returns `true` if a complete frame was malformed: the robot has answered, and the command can be repeated.
+    /// Returns `true` if a complete frame was malformed. The robot has then answered, and the command can be repeated.
     #[must_use]
     pub fn was_whole(&self) -> bool {
         self.was_whole

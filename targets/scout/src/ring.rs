@@ -1,11 +1,12 @@
-//! Converts the ranges of the sixteen sonars to pings, and determines which pings are new and how old the others are.
-//! See docs/src/reference/protocols.md, 1.6.
+//! Converts the ranges of the sixteen sonars to pings. Determines which pings are new, and how old the others are. See
+//! docs/src/reference/protocols.md, 1.6.
 
 use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, SONARS};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
-/// Tolerance for a late round of pings, in gaps. A missed ping is better than a reported ping that did not happen.
+/// Tolerance for a late round of pings, as a number of gaps. It is better to miss a ping than to report a ping that did
+/// not happen.
 const SLACK: usize = 2;
 /// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
@@ -20,16 +21,16 @@ pub(crate) struct Ring {
     last: [Option<(u8, Nanos)>; SONARS],
     /// `true` for each sonar that pings.
     active: [bool; SONARS],
-    /// Duration of one round of the ring.
+    /// Duration of one round, in which each active sonar pings once.
     around: Nanos,
-    /// Time after which an unchanged range counts as a new ping.
+    /// Time after which an unchanged range is treated as a new ping.
     again: Nanos,
     /// Interval between two pings.
     gap: Nanos,
 }
 
 impl Ring {
-    /// Returns a ring of the sonars in `order`, which ping one after another at the interval `gap`.
+    /// Creates a ring of the sonars in `order`, which ping one after another at the interval `gap`.
     pub(crate) fn new(order: &[u8], gap: Nanos) -> Self {
         let (pings, last, active) = ([Pings::default(); SONARS], [None; SONARS], [false; SONARS]);
         let mut ring = Self { pings, last, active, around: Nanos::ZERO, again: Nanos::ZERO, gap };
@@ -49,7 +50,8 @@ impl Ring {
         self.around
     }
 
-    /// Stores the sonar ranges received at `at`; `pose` is the pose by odometry. Returns the pings of each sonar.
+    /// Stores the sonar ranges that were received at the time `at`; `pose` is the pose by odometry. Returns the pings
+    /// of each sonar.
     pub(crate) fn take_in(&mut self, sonars: &[u8; SONARS], at: Nanos, pose: Pose) -> [Pings; SONARS] {
         let all = self.pings.iter_mut().zip(&mut self.last).zip(sonars).zip(&self.active);
         for (((pings, last), heard), _) in all.filter(|(_, active)| **active) {

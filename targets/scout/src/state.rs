@@ -1,4 +1,4 @@
-//! State of a Scout, with which it answers almost every command: 42 bytes in a fixed order. See
+//! The state of a Scout: 42 bytes in a fixed order, with which the robot answers almost every command. See
 //! docs/src/reference/protocols.md, 1.4.
 
 use mdle_runtime::Volts;
@@ -16,13 +16,13 @@ const MOTOR_RANGE: f64 = 12.85;
 /// State of a Scout, in the units of the protocol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct State {
-    /// Last range of each sonar, in inches; 255 if the sonar heard nothing.
+    /// Last range of each sonar, in inches; 255 if the sonar received no echo.
     pub sonars: [u8; 16],
-    /// Bit `i` for bumper switch `i` in contact.
+    /// Bumper switches in contact: bit `i` for switch `i`.
     pub bumper: u32,
-    /// Distance forward of the place where the position was set to zero, in tenths of an inch; wraps at 83 m.
+    /// Distance ahead of the position that was set to zero, in tenths of an inch; wraps at 83 m.
     pub x: i16,
-    /// Distance to the left of the place where the position was set to zero, in tenths of an inch; wraps at 83 m.
+    /// Distance to the left of the position that was set to zero, in tenths of an inch; wraps at 83 m.
     pub y: i16,
     /// Heading, in tenths of a degree, counter-clockwise.
     pub heading: i16,
@@ -32,7 +32,7 @@ pub struct State {
     pub left: i16,
     /// Status bits for motors, battery, charger and emergency stop.
     pub status: u8,
-    /// Time of the controller's clock, in milliseconds.
+    /// Time by the controller's clock, in milliseconds.
     pub clock: u32,
     /// Supply voltage of the robot's computer, as a raw measurement.
     pub cpu: u8,
@@ -41,7 +41,7 @@ pub struct State {
 }
 
 impl State {
-    /// Returns the state in the arguments of an answer; `None` if there are too few bytes.
+    /// Decodes the state from the arguments of an answer; `None` if there are too few bytes.
     #[must_use]
     pub fn read(arguments: &[u8]) -> Option<Self> {
         let body: &[u8; LENGTH] = arguments.get(..LENGTH)?.try_into().ok()?;
@@ -90,7 +90,7 @@ impl State {
         })
     }
 
-    /// Returns `true` if the emergency stop is pressed: then no command moves the robot.
+    /// Returns `true` if the emergency stop is pressed, so that no command moves the robot.
     #[must_use]
     pub const fn is_stopped(&self) -> bool {
         self.status & 0b0100_0000 != 0
@@ -102,7 +102,8 @@ impl State {
         self.status & 0b0011_0000 != 0
     }
 
-    /// Returns the supply voltages of the robot's computer and motors; each is limited to the scale of its measurement.
+    /// Returns the supply voltages of the robot's computer and motors. Each voltage is limited to the scale of its
+    /// measurement.
     #[must_use]
     pub fn volts(&self) -> [Volts; 2] {
         let volts = |raw: u8, range: f64| Volts((2.0 + f64::from(raw) * (3.0 / 255.0)) * (range / 5.0));

@@ -1,18 +1,18 @@
-//! Converts between the speeds of the robot and of its wheels, in the units of the protocol. See
+//! Converts between the speeds of the robot and the speeds of its wheels, in the units of the protocol. See
 //! docs/src/reference/protocols.md, 1.5.
 
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 
 /// Metres in a tenth of an inch.
 pub(crate) const UNIT: f64 = 0.00254;
-/// Distance that a wheel moves for each degree of a turn on the spot, in inches; equally, for each tenth of a degree,
-/// in tenths of an inch.
+/// Distance that a wheel moves for each degree of a turn on the spot, in inches. The value is the same for a tenth of a
+/// degree, in tenths of an inch.
 const ROTATION: f64 = 0.118597;
 /// Distance between the wheels, in metres, derived from [`ROTATION`].
 pub(crate) const WHEEL_BASE: f64 = 0.34519;
 
-/// Returns the speeds of the right and the left wheel for `input`, limited to `fastest` (m/s): both speeds are reduced
-/// by the same factor, so that the robot stays on its curve. An input that is not finite stops the robot.
+/// Returns the speeds of the right and the left wheel for `input`, limited to `fastest`, in m/s. Both speeds are
+/// reduced by the same factor, so that the robot stays on its curve. An input that is not finite stops the robot.
 pub(crate) fn speeds(input: &Twist, fastest: f64) -> (i16, i16) {
     let along = libm::trunc(input.v.0 / UNIT);
     // Turn rate in tenths of a degree per second.

@@ -1,4 +1,4 @@
-//! Runs the lab tour on the simulated robot without mdlec; with the option `--panic-at`, the robot's driver panics.
+//! Runs the lab tour on the simulated robot without mdlec. With the option `--panic-at`, the robot's driver panics.
 //!
 //! `cargo run -p mdle-sim --example tour -- --watch --speed 10`. The tests of this package run it as a program.
 
@@ -22,7 +22,7 @@ fn main() -> ExitCode {
 /// The simulated robot as a target with an additional option.
 struct Fragile;
 
-/// A robot, and the number of exchanges until its driver panics; `None` if it does not panic.
+/// A robot, and the number of exchanges until its driver panics; `None` if its driver does not panic.
 struct Breaking {
     robot: Observed,
     left: Option<u64>,
@@ -31,7 +31,7 @@ struct Breaking {
 /// The simulator's functions for the observer of a run and for batches.
 const SIM: Option<Observation<Observed>> = Sim::OBSERVATION;
 
-/// Returns the simulator's batch of runs, with robots whose drivers may panic.
+/// Returns the simulator's batch of runs, with robots whose drivers can panic.
 fn batch(matches: &ArgMatches, period: Duration) -> SeveralRuns<Breaking> {
     let batch = SIM.map_or(Ok(None), |sim| (sim.batch)(matches, period))?;
     let left = matches.get_one("panic-at").copied();

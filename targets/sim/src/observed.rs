@@ -23,7 +23,7 @@ pub struct Observed {
     ears: Option<(RobotEars, Microphones)>,
 }
 
-/// Sound sources of a world, which the robot hears once it has ears.
+/// Sound sources of a world, which the robot receives as soon as it has ears.
 pub(crate) struct Sounds {
     pub(crate) world: Arc<World>,
     pub(crate) seed: u64,
@@ -103,7 +103,7 @@ impl Observed {
         self.robot.supply(charge, charger);
     }
 
-    /// Sets the sounds that the robot hears once it has ears.
+    /// Sets the sounds that the robot receives as soon as it has ears.
     pub(crate) fn among(self, sounds: Sounds) -> Self {
         Self { sounds: Some(sounds), ..self }
     }
@@ -130,8 +130,8 @@ impl Observed {
         Self { goal, ..self }
     }
 
-    /// Draws the path driven after the run has ended, as a still and as a moving picture; `setup` describes the world,
-    /// the body and the seed in their titles.
+    /// Makes the robot draw its path, after the run has ended, as a still picture and as a moving picture; `setup`
+    /// describes the world, the body and the seed in the titles of the pictures.
     pub(crate) fn drawn(
         mut self,
         (plot, record): (Option<WholeFile>, Option<WholeFile>),
@@ -198,7 +198,7 @@ impl Robot for Observed {
     }
 }
 
-/// Name of the setting for the order of the sonars.
+/// Name of the setting that selects the order of the sonars.
 const SONARS: &str = "sonars";
 
 impl RobotSettings for Observed {

@@ -139,8 +139,8 @@ fn pace(text: &str) -> Option<Pace> {
     }
 }
 
-/// Returns the world of `--world`; the office floor by default. A file has priority over a built-in world of the same
-/// name.
+/// Returns the world that the option `--world` names; the office floor by default. A file has priority over a built-in
+/// world of the same name.
 pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
     let Some(path) = matches.get_one::<PathBuf>("world") else {
         return World::office().map_err(|error| error.to_string());
@@ -151,8 +151,8 @@ pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
     }
 }
 
-/// Returns the goal of `--goal`, which is the goal of the world or the goal that the option describes; `None` without
-/// the option.
+/// Returns the goal that the option `--goal` selects: the goal of the world, or the goal that the option describes.
+/// Returns `None` if the option is absent.
 pub(crate) fn goal(matches: &ArgMatches, world: &World) -> Result<Option<Goal>, String> {
     let Some(text) = matches.get_one::<String>("goal") else { return Ok(None) };
     if text == "world" {
@@ -163,7 +163,7 @@ pub(crate) fn goal(matches: &ArgMatches, world: &World) -> Result<Option<Goal>, 
     Goal::read(text).map(Some).map_err(|sentence| format!("--goal {text}: {sentence}"))
 }
 
-/// Returns the name of the world of `--world`, without the folders of a file.
+/// Returns the name of the world that the option `--world` names; for a file, its path without folders.
 pub(crate) fn world_name(matches: &ArgMatches) -> String {
     let name = file(matches, "world").map(|path| path.file_name().unwrap_or(path.as_os_str()));
     name.map_or_else(|| "office".to_owned(), |name| name.display().to_string())
@@ -189,14 +189,14 @@ fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     read_file(path, LARGEST).map_err(|error| format!("--world {}: the file cannot be read: {error}", path.display()))
 }
 
-/// Returns the pose of `--start`, as text and parsed; `None` without the option.
+/// Returns the pose that the option `--start` gives, as text and parsed; `None` if the option is absent.
 pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, String> {
     let Some(text) = matches.get_one::<String>("start") else { return Ok(None) };
     let start = text.parse().map_err(|error| format!("--start {text}: {error}"))?;
     Ok(Some((text, start)))
 }
 
-/// Returns the settings of the simulated robot in `--body`, `--without` and `--seed`.
+/// Returns the settings of the simulated robot that the options `--body`, `--without` and `--seed` give.
 pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
     let name = matches.get_one::<String>("body").map_or("ideal", String::as_str);
     let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == name);
@@ -213,29 +213,30 @@ pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
     Ok(Make { body, without: without.collect::<Result<_, _>>()?, seed: matches.get_one("seed").copied() })
 }
 
-/// Returns the charge given with `--battery`, from 0 to 1.
+/// Returns the charge that the option `--battery` gives, from 0 to 1.
 pub(crate) fn battery(matches: &ArgMatches) -> f64 {
     matches.get_one("battery").map_or(1.0, |percent: &u64| *percent as f64 / 100.0)
 }
 
-/// Returns the start noise of `--start-noise`; `None` without the option.
+/// Returns the deviation of the start pose that the option `--start-noise` gives; `None` if the option is absent.
 pub(crate) fn start_noise(matches: &ArgMatches) -> Result<Option<StartNoise>, String> {
     let Some(text) = matches.get_one::<String>("start-noise") else { return Ok(None) };
     StartNoise::read(text).map(Some).map_err(|sentence| format!("--start-noise {text}: {sentence}"))
 }
 
-/// Returns the number of `--runs`; `None` without the option.
+/// Returns the number that the option `--runs` gives; `None` if the option is absent.
 pub(crate) fn runs(matches: &ArgMatches) -> Option<NonZeroU64> {
     matches.get_one("runs").copied().and_then(NonZeroU64::new)
 }
 
-/// Returns the number of `--jobs`; `None` without the option.
+/// Returns the number that the option `--jobs` gives; `None` if the option is absent.
 pub(crate) fn jobs(matches: &ArgMatches) -> Option<NonZeroUsize> {
     let jobs: u64 = matches.get_one("jobs").copied()?;
     usize::try_from(jobs).ok().and_then(NonZeroUsize::new)
 }
 
-/// Checks that `--speed` does not slow down a batch, whose runs are always made as fast as possible.
+/// Checks that the option `--speed` is not given for a batch in order to slow it down: the runs of a batch are always
+/// made as fast as possible.
 pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
     match time(matches)? {
         Time::Stepped(Pace::Times(times)) if matches.contains_id("speed") => Err(format!(
@@ -245,7 +246,7 @@ pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
     }
 }
 
-/// Returns the given options that apply to every run of a batch, as words of a command.
+/// Returns the options that were given and apply to every run of a batch, as words of a command.
 pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
     let names = matches.ids().map(|id| id.as_str()).filter(|name| !OF_SEVERAL.contains(name));
     let given = names.filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine));
@@ -262,7 +263,7 @@ pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
     words.collect()
 }
 
-/// Returns the path given with the option `--plot`, `--record` or `--trail`; `None` without the option.
+/// Returns the path that the option `--plot`, `--record` or `--trail` gives; `None` if the option is absent.
 pub(crate) fn file<'m>(matches: &'m ArgMatches, option: &str) -> Option<&'m Path> {
     matches.get_one::<PathBuf>(option).map(PathBuf::as_path)
 }

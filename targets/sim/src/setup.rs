@@ -20,7 +20,7 @@ struct Setup {
     make: Make,
     start: Pose,
     noise: Option<StartNoise>,
-    /// Goal that decides whether a run succeeds; `None` without the option `--goal`.
+    /// Goal that decides whether a run succeeds; `None` if the option `--goal` is absent.
     goal: Option<Goal>,
     /// Charge of the battery at the start, from 0 to 1.
     charge: f64,
@@ -37,7 +37,7 @@ pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, 
     Ok(robot.drawn((file("plot")?, file("record")?), &setup.world, setup.in_words(&options::world_name(matches))))
 }
 
-/// Returns the batch of runs that the options request; `None` without the option `--runs`.
+/// Returns the batch of runs that the options request; `None` if the option `--runs` is absent.
 pub(crate) fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Batch<Observed>>, String> {
     let Some(runs) = options::runs(matches) else { return Ok(None) };
     options::agree(matches)?;
@@ -107,7 +107,7 @@ impl Setup {
     }
 }
 
-/// Returns a hint for error messages: the world's own start pose, written as an option.
+/// Returns a hint for error messages, which is the default start pose of the world, written as an option.
 fn hint(start: &Pose) -> String {
     // Degrees that were read from a file may have a rounding error in their last digit.
     let degrees = libm::round(start.theta.degrees() * 1e6) / 1e6;

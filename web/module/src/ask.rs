@@ -64,19 +64,19 @@ enum PageRequest {
         draft: PageFiles,
         at: TextPosition,
     },
-    /// Return edits that format the text of one file.
+    /// Return the edits that format the text of one file.
     Format { text: String },
     /// Return the floor of a world.
     Floor { world: String },
-    /// Check world, body and start of a run.
+    /// Check the world, the body and the start pose of a run.
     Ready(PageSetup),
     /// Begin a run.
     Begin(PageSetup),
     /// Advance the run by at most `turns` turns.
     Step { turns: u64 },
-    /// Explain a turn of the run.
+    /// Explain a turn of the current run.
     Why { turn: usize },
-    /// Perform a complete run, and return its end.
+    /// Perform a complete run, and return the way it ended.
     Trial(PageSetup),
     /// Perform a complete run, and return one of its files.
     Export {
@@ -86,7 +86,7 @@ enum PageRequest {
     },
 }
 
-/// A position in a text, as `{"line":…,"character":…}`: both count from 0, and characters are UTF-16 code units.
+/// A position in a text, as `{"line":…,"character":…}`: both are counted from 0, and characters are UTF-16 code units.
 #[derive(Debug, Clone, Copy, Deserialize)]
 struct TextPosition {
     line: u32,
@@ -99,7 +99,7 @@ impl From<TextPosition> for Position {
     }
 }
 
-/// The requests of one page, and its current run.
+/// Answers the requests of one page, and stores its current run.
 #[derive(Default)]
 pub struct PageSession {
     run: Option<Run>,

@@ -1,11 +1,12 @@
-//! Formats the causes of transitions in the words of the plan.
+//! Converts the causes of transitions to text, in the words of the plan.
 
 use mdle_quantity::cause_text;
 use mdle_runtime::{Measured, Plan, Printable, Transition};
 
 use crate::course::Seen;
 
-/// Returns the cause of a transition with its values, as `mdle run` reports it: `r1 = 0.38 m < 40cm (plan.mdle:7)`.
+/// Returns the cause of a transition with the measured values, in the form in which `mdle run` reports it: `r1 = 0.38 m
+/// < 40cm (plan.mdle:7)`.
 pub(crate) fn cause(plan: &impl Plan, transition: &Transition, operands: &[(u32, Measured)]) -> String {
     let text = cause_text(plan.source(), transition, operands);
     Printable(text.unwrap_or_else(|| transition.by(plan).to_owned())).to_string()

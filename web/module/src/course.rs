@@ -1,4 +1,4 @@
-//! Runs exchanges and turns in the same order as `mdle run`, but without a clock.
+//! Makes exchanges and turns in the same order as `mdle run`, but without a clock.
 
 use mdle_compiler::load::{LoadedPlan, PlanMoment};
 use mdle_runtime::capability::Bumpers as _;
@@ -16,25 +16,25 @@ pub(crate) struct Course {
     /// The plan before its first turn; `None` afterwards.
     waiting: Option<LoadedPlan<Alphabet>>,
     input: Twist,
-    /// Number of turns made.
+    /// Number of turns made so far.
     pub(crate) turns: u64,
     limit: Nanos,
     /// `true` if the robot touched something in the last exchange.
     pub(crate) touches: bool,
-    /// Number of contacts that have begun.
+    /// Number of contacts that have begun so far.
     pub(crate) contacts: u64,
     /// The transitions of the last turn.
     pub(crate) seen: Seen,
-    /// `true` if no law has been applied since the current atom was entered.
+    /// `true` if the law of the current atom has not been applied since the atom was entered.
     fresh: bool,
-    /// Cause of the end, once the run has ended.
+    /// Cause of the end; `None` if the run has not ended.
     pub(crate) end: Option<CourseEnd>,
 }
 
 /// The reason why a run has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum CourseEnd {
-    /// The plan is over.
+    /// The plan has ended.
     Over,
     /// The time limit was reached.
     Limit,
@@ -53,22 +53,22 @@ pub(crate) struct CourseExchange {
     pub(crate) hits: bool,
 }
 
-/// A turn of a run, with its result.
+/// A turn of a run that has been made, and its result.
 pub(crate) struct CourseTurn {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) number: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
     /// Result of the turn, with the next input.
     pub(crate) turn: Turn<Twist>,
-    /// Number of the current atom, if its law was applied for the first time since the atom was entered; otherwise
+    /// Number of the current atom if this turn was the first to apply its law since the atom was entered; otherwise
     /// `None`.
     pub(crate) began: Option<u32>,
     /// The state of the plan before each transition, and at the end of the turn.
     pub(crate) moments: Vec<PlanMoment>,
 }
 
-/// Transitions of a turn, each with the operands that fired.
+/// The transitions of a turn. Each has the operands that fired.
 #[derive(Default)]
 pub(crate) struct Seen {
     pub(crate) transitions: Vec<(Transition, Vec<(u32, Measured)>)>,
@@ -86,7 +86,8 @@ impl Watch for Seen {
 }
 
 impl Course {
-    /// Returns a run whose robot is at its start. The moments of turns are recorded if `looks` is `true`.
+    /// Creates a run whose robot is at its start. If `looks` is `true`, the run records the moments of its turns: the
+    /// states of the plan before each transition and at the end.
     pub(crate) fn new(plan: &Plan, ready: &ReadyRun, looks: bool) -> Result<Self, String> {
         let waiting = if looks { plan.looked_at() } else { plan.looked_at().unobserved() };
         Ok(Self {
@@ -159,7 +160,7 @@ impl Course {
     }
 
     /// Returns the result of the run with respect to the goal, as `mdle run --goal` reports it: `arrived`, `bumped` or
-    /// `astray`. Returns `None` without a goal.
+    /// `astray`. Returns `None` if there is no goal.
     pub(crate) fn judged(&self, goal: Option<&Goal>) -> Option<&'static str> {
         let arrives = goal?.holds(&self.robot.pose());
         Some(match (self.touches, arrives) {

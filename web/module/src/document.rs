@@ -1,4 +1,4 @@
-//! The files of a page as the compiler reads them.
+//! Lets the compiler read the files of a page.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use mdle_language_service::view::{View, view};
 use crate::draft::{FILE, PageFiles, looked_up};
 use crate::robot::robot;
 
-/// The file that is run, with the files that it uses and those of its robot's alphabet.
+/// The file that is run, the files that it uses, and the files of its robot's alphabet.
 pub(crate) struct Document<'d> {
     /// The texts of these files, for messages.
     pub(crate) sources: Sources,
@@ -51,7 +51,7 @@ impl<'d> Document<'d> {
         Self::for_robot(&draft.robot, draft)
     }
 
-    /// Returns the document for a page's files, for the robot `name` instead of the page's robot.
+    /// Returns the document for a page's files, but for the robot `name` instead of the robot that the page selects.
     ///
     /// # Errors
     /// Fails if the text is too long, or if there is no such robot.
@@ -88,7 +88,7 @@ impl<'d> Document<'d> {
         self.read.iter().map(|(place, source)| (*source, place.clone())).collect()
     }
 
-    /// Returns the file in the editor, and `true` if it is the file that is run or a file that was read for it.
+    /// Returns the file in the page's editor, and `true` if this file is run or was read for the file that is run.
     ///
     /// # Errors
     /// Fails if there is no such file, or if it is too long.
@@ -120,7 +120,7 @@ impl<'d> Document<'d> {
     /// Compiles the plan `wanted`, or the only plan that no other plan uses.
     ///
     /// # Errors
-    /// Fails with messages as `mdlec` prints them.
+    /// Fails with the same messages that `mdlec` prints.
     pub(crate) fn compile(&mut self, wanted: Option<&str>, limit: Limit) -> Result<Compiled, String> {
         let text = self.text().to_owned();
         let (mut compiled, found) = compile_within(self.source, &text, self.alphabet, wanted, self, limit);

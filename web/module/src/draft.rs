@@ -8,12 +8,12 @@ use serde::Deserialize;
 /// Name of the file that is run.
 pub(crate) const FILE: &str = "plan.mdle";
 
-/// The plan files of a page, as typed.
+/// The plan files of a page, as the user has typed them.
 #[derive(Debug, Clone, Default, Deserialize)]
 pub(crate) struct PageFiles {
     /// Text of the file that is run, [`FILE`].
     pub(crate) text: String,
-    /// Texts of the other files, by their names; a name may begin with folders.
+    /// Texts of the other files, by their names; a name may include folders.
     #[serde(default)]
     pub(crate) files: BTreeMap<String, String>,
     /// Name of the file in the editor; empty for [`FILE`].

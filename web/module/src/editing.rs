@@ -1,4 +1,5 @@
-//! Features of the editor. Positions are lines and columns in UTF-16 code units, both from 0.
+//! Implements features of the page's editor. Positions consist of a line and a column in UTF-16 code units, both
+//! counted from 0.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -39,9 +40,9 @@ impl<'t> OffsetConverter<'t> {
     }
 }
 
-/// Returns the data that the editor shows: the diagnostics, with their fixes, of the file that is run and of the file
-/// in the editor; the names of all plans, and of the plans that can be run, of the file that is run; and the semantic
-/// tokens of the file in the editor.
+/// Returns the data that the editor shows. These are the diagnostics, with their fixes, of the file that is run and of
+/// the file in the editor; the names of all plans in the file that is run, and of those that can be run; and the
+/// semantic tokens of the file in the editor.
 pub(crate) fn diagnose(document: &mut Document<'_>) -> Result<Value, String> {
     let found = document.check();
     let mut diagnostics = diagnostics(document, &found, |_| true);

@@ -68,7 +68,7 @@ pub(crate) fn export(kind: ExportKind, setup: &PageSetup) -> Result<Value, Strin
     Ok(json!({ "output": files.finished() }))
 }
 
-/// The files that are being written.
+/// The files that the run is writing.
 struct ExportedFiles {
     kind: ExportKind,
     text: String,

@@ -5,17 +5,18 @@ use serde_json::{Value, json};
 
 use crate::setup::ReadyRun;
 
-/// Maximum number of corners of a world that is drawn.
+/// Maximum number of corners that a world may have in order to be drawn.
 const CORNERS_MOST: usize = 200_000;
 
-/// Returns the floor of a world in TOML: outlines, moving things, start, goal and charger, in metres.
+/// Returns the floor of a world in TOML: the outlines, the moving objects, the start pose, the goal and the charger, in
+/// metres.
 pub(crate) fn floor(text: &str) -> Result<Value, String> {
     let world = World::parse("world", text).map_err(|error| error.to_string())?;
     Walls::of_any(&world).map_err(|what| format!("world: {what}"))?;
     drawn(&world, world.goal)
 }
 
-/// Returns the robot's pose at the start, and its form.
+/// Returns the robot's start pose and the form of its body.
 fn robot(ready: &ReadyRun) -> Value {
     let form = ready.make.form();
     let (half_length, half_width) = form.halves();

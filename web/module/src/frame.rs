@@ -1,4 +1,4 @@
-//! Returns the data from which a page draws a turn. Numbers are rounded for drawing; the files of a run have all
+//! Returns the data from which a page draws a turn. Numbers are rounded for drawing; the files of a run contain all
 //! digits.
 
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::causes::cause;
 use crate::course::{Course, CourseExchange, CourseTurn};
 
-/// Maximum number of transitions of a turn that a page gets.
+/// Maximum number of transitions of a turn that a page receives.
 const TRANSITIONS_MOST: usize = 40;
 
 /// Returns a turn as JSON; `before` is the time of the previous exchange.
@@ -42,15 +42,15 @@ pub(crate) fn frame(course: &Course, exchange: &CourseExchange, made: &CourseTur
     })
 }
 
-/// Returns the range of the newest ping of a sonar; null without an echo.
+/// Returns the range of the newest ping of a sonar; null if there was no echo.
 fn range(exchange: &CourseExchange, number: usize) -> Value {
     let sonar = SonarId::new(u8::try_from(number).unwrap_or(0));
     let newest = exchange.y.pings(sonar).newest_first().next();
     newest.and_then(|ping| ping.range).map_or(Value::Null, |range| json!(round(range.0)))
 }
 
-/// Returns the times since the entry of the innermost scope that encloses the current atom and since the entry of the
-/// atom, in this order. Returns an empty list if the atom has ended.
+/// Returns two times: the time since the entry of the innermost scope that encloses the current atom, and the time
+/// since the entry of the atom. Returns an empty list if the atom has ended.
 fn since(moment: Option<&PlanMoment>) -> Value {
     let scopes = moment.filter(|moment| moment.cause.is_none()).map_or(&[][..], |moment| &moment.scopes);
     let inner = scopes.get(scopes.len().saturating_sub(2)..).unwrap_or(scopes);
@@ -67,8 +67,8 @@ fn skipped(moments: &[PlanMoment]) -> Value {
     times.into_iter().map(|(atom, times)| json!([atom, times])).collect()
 }
 
-/// Returns the transitions: the scope that ended, the cause, and the atom that followed. If there are too many, only
-/// the first ones and the last one are returned.
+/// Returns the transitions of the turn, each with the scope that ended, the cause, and the atom that followed. If there
+/// are too many, only the first ones and the last one are returned.
 fn fired(course: &Course) -> Value {
     let Some(machine) = &course.machine else { return json!([]) };
     let all = &course.seen.transitions;
@@ -84,7 +84,7 @@ fn fired(course: &Course) -> Value {
     shown.map(transition).collect()
 }
 
-/// Rounds to a tenth of a millimetre, or of a milliradian.
+/// Rounds a number to four decimal places: to a tenth of a millimetre or of a milliradian.
 fn round(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }

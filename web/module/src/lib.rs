@@ -1,4 +1,5 @@
-//! The playground's module for a browser: the compiler, the language service and the simulator behind one function.
+//! The module that the playground loads into a browser. It contains the compiler, the language service and the
+//! simulator, which a page uses through one function.
 //!
 //! A page sends a request as JSON and receives an answer as JSON, through the functions of [`page`]. The module imports
 //! nothing: it has no clock, no files and no network, so the same request has the same answer everywhere.

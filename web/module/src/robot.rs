@@ -1,4 +1,4 @@
-//! The robots for which the playground checks plans. It runs them on the target `sim`.
+//! The robots for which the playground checks plans. It runs all plans on the target `sim`.
 
 use std::sync::OnceLock;
 

@@ -13,16 +13,17 @@ use crate::{floor, frame, why};
 
 /// Maximum number of moments of a turn that are shown.
 const MOMENTS_MOST: usize = 40;
-/// Number of transitions after which an answer contains no further turn; a single turn can have 4,096 transitions.
+/// Number of transitions after which an answer contains no further turn; the limit can be exceeded by the transitions
+/// of one turn, at most 4,096.
 const TRANSITIONS_MOST: usize = 20_000;
 
 /// Limits on the size of the data of a run.
 #[derive(Debug, Clone, Copy)]
 struct DataLimits {
-    /// Maximum size of all moments, in bytes; a turn whose moments are not kept is explained by repeating the
-    /// run.
+    /// Maximum size of all moments, in bytes; a turn whose moments are not stored is explained by repeating the run.
     moments: usize,
-    /// Maximum size, in bytes, of all turns as a page receives and keeps them; the run ends when it is reached.
+    /// Maximum size, in bytes, of all turns in the form in which a page receives and stores them; the run ends when it
+    /// is reached.
     turns: usize,
 }
 
@@ -33,11 +34,11 @@ pub(crate) struct Run {
     plan: Plan,
     ready: ReadyRun,
     course: Course,
-    /// Moments of each turn, from the first turn until the limit was reached.
+    /// Moments of each turn, from the first turn to the last one before the limit was reached.
     moments: Vec<Vec<PlanMoment>>,
-    /// Remaining size within the limits.
+    /// Sizes that are still available within the limits.
     left: DataLimits,
-    /// `true` once the turns have reached their limit.
+    /// `true` if the turns have reached their limit.
     is_full: bool,
     /// Time of the last exchange.
     before: Option<Nanos>,
@@ -59,7 +60,7 @@ impl Run {
         Ok(Self { plan, ready, course, moments: Vec::new(), left, is_full: false, before: None })
     }
 
-    /// Returns the plan's elements, and the floor with the robot's form.
+    /// Returns the elements of the plan, and the floor with the form of the robot's body.
     ///
     /// # Errors
     /// Fails if the world is too large to be drawn.
@@ -93,7 +94,8 @@ impl Run {
         })
     }
 
-    /// Runs at most `turns` turns, and returns them as a page draws them, with the end of the run if it has ended.
+    /// Runs at most `turns` turns, and returns the data from which a page draws them. The result contains the end of
+    /// the run if the run has ended.
     pub(crate) fn step(&mut self, turns: u64) -> Value {
         let (mut frames, mut transitions) = (Vec::new(), 0);
         for _ in 0..turns {
@@ -131,7 +133,8 @@ impl Run {
         }
     }
 
-    /// Returns the reason why the run has ended, and its result with respect to the goal; null before the end.
+    /// Returns the reason why the run has ended, and its result with respect to the goal; null if the run has not
+    /// ended.
     fn end(&self) -> Value {
         let judged = self.course.judged(self.ready.goal.as_ref());
         match &self.course.end {

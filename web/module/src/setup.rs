@@ -1,4 +1,4 @@
-//! The setup of a run, as the options of the target `sim` describe it.
+//! The setup of a run, with the same settings as the options of the target `sim`.
 
 use mdle_runtime::{Nanos, Pose};
 use mdle_simulator::{Body, Goal, Make, PARTS, Simulated, Start, StartNoise, Walls, World, alphabet, check};
@@ -25,11 +25,11 @@ pub(crate) struct PageSetup {
     pub(crate) world_name: String,
     /// Body of the robot: `ideal`, `scout` or `atrv`; empty for `ideal`.
     pub(crate) body: String,
-    /// Names of the body's errors to leave out, separated by commas.
+    /// Names of the body's errors that are not simulated, separated by commas.
     pub(crate) without: String,
     /// Start pose as `x,y,deg`; empty for the start pose of the world.
     pub(crate) start: String,
-    /// Maximum random offset of the start as `m,deg`; empty for none.
+    /// Maximum random offset of the start pose as `m,deg`; empty for no offset.
     pub(crate) start_noise: String,
     /// Random seed; `None` for a run without random errors.
     pub(crate) seed: Option<u64>,
@@ -41,7 +41,7 @@ pub(crate) struct PageSetup {
     pub(crate) limit: Option<f64>,
 }
 
-/// Validated world, body and start of a run.
+/// The world, the body and the start pose of a run, after they have been checked.
 pub(crate) struct ReadyRun {
     pub(crate) world: World,
     pub(crate) make: Make,
@@ -57,7 +57,7 @@ pub(crate) struct ReadyRun {
 pub(crate) const PERIOD: Nanos = alphabet::PERIOD;
 
 impl PageSetup {
-    /// Reads world, body and start.
+    /// Reads and checks the world, the body and the start pose.
     ///
     /// # Errors
     /// Fails if a field is invalid; the message names the field.
@@ -112,7 +112,8 @@ impl PageSetup {
         Ok(Make { body, without: without.collect::<Result<_, _>>()?, seed: self.seed })
     }
 
-    /// Returns a description of the world, the body and the seed, as in titles of `mdle run --plot`.
+    /// Returns a description of the world, the body and the seed, as in the titles of the pictures of `mdle run
+    /// --plot`.
     pub(crate) fn in_words(&self, make: &Make) -> String {
         let parts = make.without.iter().filter_map(|part| PARTS.iter().find(|(_, known)| known == part));
         let names: Vec<&str> = parts.map(|(name, _)| *name).collect();

@@ -1,4 +1,4 @@
-//! Answers requests for the commands of `mdlec`, byte for byte with the output of these commands.
+//! Answers requests for the commands of `mdlec`, with the same bytes as the output of these commands.
 
 use mdle_compiler::Compiled;
 use mdle_compiler::alphabet::{Declaration, DeclarationKind};
@@ -30,7 +30,7 @@ fn messages(document: &Document<'_>, found: &[Diagnostic]) -> String {
     found.iter().map(|diagnostic| document.sources.message(diagnostic).to_json() + "\n").collect()
 }
 
-/// Returns the text in the canonical layout; with errors, the messages as JSON.
+/// Returns the text in the canonical layout; if it has errors, returns the messages as JSON.
 pub(crate) fn fmt(document: &Document<'_>) -> Value {
     match syntax::format(document.source, document.text()) {
         Ok(text) => output(text),
@@ -73,7 +73,7 @@ pub(crate) fn draw(document: &mut Document<'_>, plan: Option<&str>) -> Result<Va
     picture::svg(&machine).map(output).map_err(|too_large| document.rendered(&[too_large]))
 }
 
-/// Returns the trace of a plan on a script.
+/// Returns the trace of a plan that runs on a script.
 pub(crate) fn trace(document: &mut Document<'_>, plan: Option<&str>, script: &str) -> Result<Value, String> {
     let compiled = document.compile(plan, |_| Ok(()))?;
     let script = Script::read(script).and_then(|script| compiled.worded(script, document.alphabet));

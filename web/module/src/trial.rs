@@ -7,8 +7,8 @@ use crate::course::{Course, CourseEnd};
 use crate::plan::Plan;
 use crate::setup::PageSetup;
 
-/// Performs a run, and returns its end: `over`, `limit` or `fault`; and, if there is a goal, `arrived`, `bumped` or
-/// `astray`, as `mdle run --goal` judges it.
+/// Performs a run, and returns the way it ended: `over`, `limit` or `fault`. If there is a goal, also returns the
+/// result that `mdle run --goal` reports: `arrived`, `bumped` or `astray`.
 pub(crate) fn trial(setup: &PageSetup) -> Result<Value, String> {
     let plan = Plan::of(&setup.draft, setup.plan.as_deref())?;
     let ready = setup.ready()?;

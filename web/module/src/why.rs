@@ -39,8 +39,9 @@ fn scope(machine: &Machine, words: &dyn Words, moment: &ScopeMoment) -> Value {
     })
 }
 
-/// Appends to `joined` the operands that AND and OR join, each with the value of the comparison that is shown for it.
-/// `parts` are the values of the condition and its operands in pre-order.
+/// Appends to `joined` the operands of the AND and OR operators of a condition, each with the value of the comparison
+/// that is shown for it. `parts` are the values of the condition and its operands in the order of the text, an operator
+/// before its operands.
 fn operands(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>, joined: &mut Vec<(Examined, bool)>) {
     let Some(part) = parts.next().copied() else { return };
     if condition.lasting().is_some() {
@@ -62,7 +63,7 @@ fn operands(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>, j
     }
 }
 
-/// Takes the values of a condition inside NOT or RISING from `parts`, and returns the value of the innermost
+/// Removes from `parts` the values of a condition inside NOT or RISING, and returns the value of the innermost
 /// comparison.
 fn innermost(condition: &Condition, parts: &mut std::slice::Iter<'_, Examined>) -> Option<bool> {
     let part = parts.next()?;

@@ -40,8 +40,9 @@ pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns an error if the declaration cannot be `exclusive`. An exclusive interrupt needs at least one parameter, only
-/// parameters that are compared without rounding, and the same value in all scopes, so it cannot have memory.
+/// Returns an error if the declaration cannot be `exclusive`. An exclusive interrupt has at least one parameter, and
+/// all its parameters are compared without rounding. It has no memory, because its value must be the same in all
+/// scopes.
 fn exclusive(declaration: &Declaration) -> Option<Diagnostic> {
     let name = &declaration.name;
     let because = |message: String| Some(at(declaration, message));

@@ -8,14 +8,14 @@ use super::synonyms;
 use super::{AlphabetFile, Capability, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Alphabet of a robot, against which the robot's plans are checked.
+/// Complete alphabet of a robot. Plans for the robot are checked against it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Alphabet {
     /// Name of the target, or of the shared alphabet if there is no target.
     pub name: String,
     /// Rust crate that implements the target; empty if there is no target.
     pub crate_name: String,
-    /// Period of a turn, in nanoseconds, if the target declares it.
+    /// Period of a turn, in nanoseconds; `None` if the target does not declare it.
     pub period: Option<u64>,
     /// Capabilities of the robot.
     pub capabilities: Vec<Capability>,
@@ -23,14 +23,15 @@ pub struct Alphabet {
     pub engine: Vec<Capability>,
     /// `false` if the plan is compiled to an executable, which has no engine.
     pub has_engine: bool,
-    /// Robots that messages may suggest, each with its capabilities.
+    /// Robots that messages may suggest, with their capabilities.
     pub robots: Vec<(String, Vec<Capability>)>,
-    /// `true` if there is no target: the robot then has every capability.
+    /// `true` if there is no target; the robot is then assumed to have every capability.
     everything: bool,
     declarations: Vec<Declaration>,
 }
 
-/// Combines a target's alphabet with the alphabets in `shared` that it uses; returns the result with its diagnostics.
+/// Combines a target's alphabet with those alphabets in `shared` that it uses. Returns the combined alphabet and the
+/// diagnostics.
 #[must_use]
 pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<Diagnostic>) {
     let mut found = Vec::new();
@@ -65,7 +66,7 @@ pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<
 }
 
 impl Alphabet {
-    /// Returns the alphabet that consists of one shared file, for a robot with every capability.
+    /// Returns the alphabet that consists of one shared file only. It is for a robot with every capability.
     #[must_use]
     pub fn shared(file: AlphabetFile) -> Self {
         Self {
@@ -81,7 +82,7 @@ impl Alphabet {
         }
     }
 
-    /// Returns the capabilities of the robot; empty for a shared file, whose robot has every capability.
+    /// Returns the capabilities of the robot; empty for a shared file, which is for a robot with every capability.
     #[must_use]
     pub fn capabilities(&self) -> &[Capability] {
         &self.capabilities
@@ -97,12 +98,13 @@ impl Alphabet {
         self.declarations.iter().filter(move |declaration| declaration.name == name)
     }
 
-    /// Returns the names of the quarks and signals; a name with several declarations is repeated.
+    /// Returns the names of all quarks and signals; a name with several declarations occurs several times.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.declarations.iter().map(|declaration| declaration.name.as_str())
     }
 
-    /// Returns `true` if the robot has the capability, with at least as many devices as `needed` demands.
+    /// Returns `true` if the robot has the capability `needed`, with at least the number of devices that `needed`
+    /// demands.
     #[must_use]
     pub fn has(&self, needed: &Capability) -> bool {
         self.everything || is_among(needed, &self.capabilities) || self.has_engine && is_among(needed, &self.engine)
@@ -121,8 +123,8 @@ impl Alphabet {
         self.robots.iter().filter(|(_, own)| can(own)).map(|(name, _)| name.as_str()).collect()
     }
 
-    /// Returns the name of a quark or signal that the user probably meant by `name`: a similar name, or a name for
-    /// which `name` is a synonym. Only declarations of `kind` are considered if a kind is given.
+    /// Returns the name of the quark or signal that a user who typed `name` probably meant: a similar name, or a name
+    /// that has `name` as a synonym. If `kind` is given, only declarations of this kind are considered.
     #[must_use]
     pub fn nearest(&self, name: &str, kind: Option<DeclarationKind>) -> Option<&str> {
         let names = || {
@@ -132,7 +134,7 @@ impl Alphabet {
         nearest(name, names()).or_else(|| synonyms::meant(name).find_map(|meant| names().find(|name| *name == meant)))
     }
 
-    /// Returns the quarks of this kind for which `name` is a synonym, the most probable first.
+    /// Returns the quarks of this kind that have `name` as a synonym; the most probable one comes first.
     pub fn synonyms(&self, name: &str, kind: DeclarationKind) -> impl Iterator<Item = &Declaration> {
         synonyms::meant(name).filter_map(move |meant| self.declarations_of(meant).find(|found| found.kind == kind))
     }
@@ -154,19 +156,21 @@ impl Alphabet {
     }
 }
 
-/// Returns `true` if `capabilities` contains the capability, with at least as many devices as `needed` demands.
+/// Returns `true` if `capabilities` contains the capability `needed`, with at least the number of devices that `needed`
+/// demands.
 fn is_among(needed: &Capability, capabilities: &[Capability]) -> bool {
     capabilities.iter().any(|own| own.name == needed.name && own.size >= needed.size)
 }
 
-/// Returns `true` if a target's own declaration replaces a shared one: both have the same name and kinds of arguments.
+/// Returns `true` if a target's own declaration replaces a shared one, because both have the same name and the same
+/// kinds of arguments.
 fn replaces(own: &Declaration, shared: &Declaration) -> bool {
     let kinds = |declaration: &Declaration| -> Vec<_> { declaration.params.iter().map(|param| param.kind).collect() };
     own.name == shared.name && kinds(own) == kinds(shared)
 }
 
-/// Sorts declarations in the order of the shared alphabets, with a target's additions last, so that the first
-/// declaration of a name remains the first even if the target replaces declarations.
+/// Sorts declarations in the order of the shared alphabets; a target's additions come last. The first declaration of a
+/// name therefore remains the first one, even if the target replaces declarations.
 fn in_order(mut declarations: Vec<Declaration>, shared: &[AlphabetFile]) -> Vec<Declaration> {
     let order: Vec<&Declaration> = shared.iter().flat_map(|file| &file.declarations).collect();
     let place = |found: &Declaration| order.iter().position(|shared| replaces(found, shared)).unwrap_or(order.len());
@@ -183,7 +187,7 @@ impl fmt::Display for Capability {
     }
 }
 
-/// Writes the canonical form of the declaration, without its documentation and its place, for the hash.
+/// Writes the canonical form of the declaration, without its documentation and its span, as input for the hash.
 impl fmt::Display for Declaration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:?} {}(", self.kind, self.name)?;

@@ -1,5 +1,5 @@
-//! Exact decimal numbers. Arguments are compared exactly as written, without rounding (docs/src/reference/semantics.md,
-//! 7.2).
+//! Exact decimal numbers. Arguments are compared by their exact values as written, without rounding
+//! (docs/src/reference/semantics.md, 7.2).
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ pub struct Decimal {
 }
 
 impl Decimal {
-    /// Reads the text of a number token, with sign, digits, fraction and exponent. Returns `None` for any other text.
+    /// Parses the text of a number token, with sign, digits, fraction and exponent. Returns `None` for any other text.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let (negative, rest) = match text.strip_prefix('-') {
@@ -67,8 +67,8 @@ impl Decimal {
         format!("{sign}0{digits}e{}", self.exponent).parse().unwrap_or(f64::INFINITY)
     }
 
-    /// Returns the nearest whole number of billionths, with halves rounded up; `None` if it is negative or exceeds
-    /// `u64`.
+    /// Returns the number in billionths, rounded to the nearest whole number (halves are rounded up); `None` if the
+    /// result is negative or does not fit into `u64`.
     #[must_use]
     pub fn to_nanos(&self) -> Option<u64> {
         if self.digits.is_empty() {
@@ -113,7 +113,7 @@ impl Decimal {
 }
 
 impl fmt::Display for Decimal {
-    /// Writes the number without an exponent, unless the result would be longer than forty digits.
+    /// Writes the number without an exponent, unless it would then be longer than forty digits.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.digits.is_empty() {
             return f.write_str("0");

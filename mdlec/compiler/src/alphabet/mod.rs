@@ -19,14 +19,14 @@ pub use read::read;
 
 use crate::diagnostic::Span;
 
-/// Contents of an alphabet file: a target's own alphabet, or a shared one that targets `use`.
+/// Contents of an alphabet file: either a target's own alphabet, or a shared alphabet that targets `use`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlphabetFile {
     /// Name of the target or of the shared alphabet.
     pub name: String,
     /// Head of a target's alphabet; `None` for a shared alphabet.
     pub target: Option<TargetHead>,
-    /// Shared alphabets that the file uses, with the places of their names.
+    /// Shared alphabets that the file uses, with the spans of their names.
     pub uses: Vec<(String, Span)>,
     /// Quarks and signals that the file declares, in order.
     pub declarations: Vec<Declaration>,
@@ -37,7 +37,7 @@ pub struct AlphabetFile {
 pub struct TargetHead {
     /// Rust crate that implements the target.
     pub crate_name: String,
-    /// Period of a turn, in nanoseconds, if the target declares it.
+    /// Period of a turn, in nanoseconds; `None` if the target does not declare it.
     pub period: Option<u64>,
     /// Capabilities of the robot.
     pub capabilities: Vec<Capability>,
@@ -45,7 +45,7 @@ pub struct TargetHead {
     pub engine: Vec<Capability>,
 }
 
-/// A capability with its size, such as `sonar[16]`.
+/// A capability and its size, such as `sonar[16]`.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Capability {
     /// Name of the capability.
@@ -80,9 +80,9 @@ pub struct Declaration {
     pub unit: Option<(Unit, f64)>,
     /// `true` for a law that can complete by itself.
     pub completes: bool,
-    /// `true` if the quark has memory.
+    /// `true` if the quark has a memory.
     pub remembers: bool,
-    /// `true` for an interrupt that fires for at most one value of its arguments in a turn.
+    /// `true` for an interrupt that fires in one turn for at most one value of its arguments.
     pub exclusive: bool,
     /// Capabilities that the quark or signal needs.
     pub needs: Vec<Capability>,
@@ -108,14 +108,14 @@ pub struct Param {
     pub name: String,
     /// Type of the parameter.
     pub kind: ParameterKind,
-    /// Unit of a number that is written without a unit (a bare number): the base unit of the kind if the alphabet
-    /// declares no other unit; `None` if the kind has no unit.
+    /// Unit that is assumed for a bare number (a number that is written without a unit). This is the base unit of the
+    /// kind, unless the alphabet declares another unit; `None` if the kind has no unit.
     pub unit: Option<Unit>,
-    /// Default value as written, in the unit of a bare number.
+    /// Default value as written, in the unit of a number that is written without a unit.
     pub default: Option<String>,
-    /// Minimum and maximum value, in the unit of a bare number.
+    /// Minimum and maximum value, in the unit that is assumed for a bare number.
     pub range: Option<(f64, f64)>,
-    /// The only value in the range that is not allowed, in the unit of a bare number.
+    /// The only value in the range that is not allowed, in the unit that is assumed for a bare number.
     pub except: Option<f64>,
     /// Attributes of a module that the quark reads. If a signal lists no attributes, it reads the attribute that has
     /// the signal's name.

@@ -15,7 +15,7 @@ pub enum ParameterKind {
     Time,
     /// A voltage in volts.
     Voltage,
-    /// A frequency in hertz; it has a unit, but no parameter is of this kind yet.
+    /// A frequency in hertz. It has a unit, but no parameter has this kind yet.
     Frequency,
     /// A number without a unit.
     Number,
@@ -36,7 +36,7 @@ pub enum ParameterKind {
 }
 
 impl ParameterKind {
-    /// Names of the kinds in an alphabet, except `bits`, which needs a length.
+    /// Names of all kinds in an alphabet, except `bits`, which needs a length.
     pub const NAMES: &[&str] = &[
         "length",
         "speed",
@@ -53,7 +53,7 @@ impl ParameterKind {
         "file",
     ];
 
-    /// Returns the kind with this name in an alphabet, if it is in [`ParameterKind::NAMES`].
+    /// Returns the kind with this name in an alphabet; `None` if the name is not in [`ParameterKind::NAMES`].
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Some(match name {
@@ -74,7 +74,7 @@ impl ParameterKind {
         })
     }
 
-    /// Returns the name of the kind in words, with its article, such as "an angle".
+    /// Returns the name of the kind in words, with an article, such as "an angle".
     #[must_use]
     pub fn words(self) -> String {
         match self {
@@ -96,8 +96,8 @@ impl ParameterKind {
         }
     }
 
-    /// Returns `true` if different texts always stand for different values of the kind: values are not rounded, and no
-    /// value has two names.
+    /// Returns `true` if different texts always mean different values of the kind, because values are not rounded and
+    /// no value has two names.
     #[must_use]
     pub fn is_discrete(self) -> bool {
         match self {
@@ -114,9 +114,9 @@ impl ParameterKind {
     }
 }
 
-/// Returns `true` if a law with this name and with arguments of these kinds may depend on the direction of its frame:
-/// it takes an angle, or a file or a module that may contain angles. The exception is `turn`, whose angle is relative
-/// to the heading at which the atom began.
+/// Returns `true` if a law with this name and with arguments of these kinds may depend on the direction of its frame,
+/// because it takes an angle, or a file or a module that may contain angles. The exception is `turn`, whose angle is
+/// relative to the heading at which the atom began.
 pub fn has_direction(law: &str, mut kinds: impl Iterator<Item = ParameterKind>) -> bool {
     // The angle of `turn` is relative to the heading at which its atom began.
     law != "turn"
@@ -144,12 +144,13 @@ pub struct Unit {
     pub name: &'static str,
     /// Kind of quantity that the unit measures.
     pub kind: ParameterKind,
-    /// Integer factor of the exact conversion to the family's unit: one of this unit is `factor` times ten to the power
+    /// Factor of the exact conversion to the family's unit: one of this unit is `factor` times ten to the power
     /// `exponent` of the family's unit.
     pub factor: u32,
     /// Exponent of ten in the exact conversion to the family's unit.
     pub exponent: i32,
-    /// Name of the family's unit, in which exact values are compared; degrees and radians belong to different families.
+    /// Name of the unit in which exact values of this unit's family are compared. Degrees and radians belong to
+    /// different families.
     pub family: &'static str,
     /// `true` if this unit is the SI unit in which robots compute.
     pub is_base: bool,

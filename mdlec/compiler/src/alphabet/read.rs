@@ -12,7 +12,7 @@ use super::{
 };
 use crate::diagnostic::{Code, Diagnostic, SourceId, Span, sort};
 
-/// Reads an alphabet, and returns it with all diagnostics; `None` if it has no head.
+/// Parses an alphabet. Returns the alphabet, or `None` if it has no head, with all diagnostics.
 #[must_use]
 pub fn read(source: SourceId, text: &str) -> (Option<AlphabetFile>, Vec<Diagnostic>) {
     let mut reader = Reader { text, source, tokens: Vec::new(), at: 0, found: Vec::new() };
@@ -253,7 +253,8 @@ impl<'t> Reader<'t> {
         Ok(with)
     }
 
-    /// Returns `true` if a comma and another attribute follow; a name before a colon is the next parameter instead.
+    /// Returns `true` if a comma and another attribute follow. A name before a colon is not an attribute, but the next
+    /// parameter.
     fn names_attribute(&self) -> bool {
         let token = |ahead: usize| self.tokens.get(self.at + ahead).map(|(token, _)| *token);
         token(0) == Some(Token::Comma) && token(1) == Some(Token::Word) && token(2) != Some(Token::Colon)

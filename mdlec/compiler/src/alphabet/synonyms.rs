@@ -1,6 +1,6 @@
-//! Synonyms of quarks' names, which users type before they know an alphabet.
+//! Synonyms of quark names: words that users type before they know an alphabet.
 
-/// Names of quarks, each with its synonyms.
+/// Names of quarks, each with a list of synonyms.
 const SYNONYMS: &[(&str, &[&str])] = &[
     ("go", &["forward", "drive", "move", "ahead", "straight", "forwards", "run", "velocity"]),
     ("goAvoid", &["goto", "moveTo", "driveTo", "navigate", "avoid"]),
@@ -19,7 +19,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("battery", &["voltage", "volts"]),
 ];
 
-/// Returns the names of quarks for which `name` is a synonym.
+/// Returns the names of the quarks that have `name` as a synonym.
 pub(super) fn meant(name: &str) -> impl Iterator<Item = &'static str> {
     let is_meant = move |words: &[&str]| words.iter().any(|word| word.eq_ignore_ascii_case(name));
     SYNONYMS.iter().filter(move |(_, words)| is_meant(words)).map(|(quark, _)| *quark)

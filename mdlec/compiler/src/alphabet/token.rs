@@ -1,4 +1,4 @@
-//! Tokens of an alphabet file; unlike in a plan, `;` ends a declaration here.
+//! Tokens of an alphabet file. Unlike in a plan, `;` ends a declaration.
 
 use logos::Logos;
 
@@ -13,7 +13,7 @@ pub(super) enum Token {
     /// A name, a keyword or a unit such as `cm/s`.
     #[regex(r"[\p{L}_][\p{L}\p{Nd}_]*(/[a-z]+)?")]
     Word,
-    /// A number, with the unit that directly follows.
+    /// A number, with the unit that directly follows it.
     #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")]
     Number,
     /// The sign `:`.
@@ -46,7 +46,7 @@ pub(super) enum Token {
 }
 
 impl Token {
-    /// Returns the name of the token in messages.
+    /// Returns the name of the token for use in messages.
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Doc => "a doc comment",

@@ -1,5 +1,5 @@
-//! Enumerates the choices of some variables, that is, all assignments of values to them, and determines the choices in
-//! which a condition has fired.
+//! Enumerates the choices of some variables. A choice assigns a value to each variable. For a condition, determines the
+//! choices in which it has fired.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,7 +8,7 @@ use super::variables::Variable;
 use crate::fsm::Machine;
 use crate::plan::{After, Condition};
 
-/// Turn in which a condition is read, relative to the condition's scope.
+/// Turn in which a condition is evaluated, relative to the condition's scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum When {
     /// The turn in which the condition's scope is entered.
@@ -19,7 +19,7 @@ pub(super) enum When {
     Past,
 }
 
-/// A condition in the scope of a bracket.
+/// A condition that is evaluated in the scope of a bracket.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ScopedCondition<'l> {
     pub(super) condition: &'l Condition,
@@ -36,7 +36,8 @@ pub(super) struct Choices {
 
 impl Choices {
     /// Enumerates the choices of the variables in `all`. `value` returns the value of a variable that can have only one
-    /// value, and `None` for any other variable. Returns `None` if too many variables have two values.
+    /// value, and `None` for a variable that can have both values. Returns `None` if too many variables can have both
+    /// values.
     pub(super) fn new(all: &BTreeSet<Variable>, value: impl Fn(&Variable) -> Option<bool>) -> Option<Self> {
         let free = all.iter().filter(|variable| value(variable).is_none()).count();
         if free > VARIABLES {
@@ -53,17 +54,18 @@ impl Choices {
         Some(Self { free, columns: columns.collect() })
     }
 
-    /// Returns the table with `value` in every choice.
+    /// Returns the table that contains `value` for every choice.
     pub(super) fn constant(&self, value: bool) -> TruthTable {
         TruthTable::constant(self.free, value)
     }
 
-    /// Returns each variable, with the table of choices in which it is true.
+    /// Returns each variable, with the table of the choices in which it is true.
     pub(super) fn columns(&self) -> impl Iterator<Item = (&Variable, &TruthTable)> {
         self.columns.iter()
     }
 
-    /// Returns the table of choices in which a condition has fired. A variable that was not enumerated counts as false.
+    /// Returns the table of the choices in which a condition has fired. A variable that was not enumerated is treated
+    /// as false.
     pub(super) fn fired(&self, read: ScopedCondition<'_>, machine: &Machine) -> TruthTable {
         let ScopedCondition { condition, bracket, when } = read;
         let column = |variable| self.columns.get(&variable).cloned().unwrap_or_else(|| self.constant(false));
@@ -108,8 +110,8 @@ impl Choices {
 
 /// Collects the variables of a condition in `found`; returns `false` if there are too many.
 pub(super) fn variables(read: ScopedCondition<'_>, machine: &Machine, found: &mut BTreeSet<Variable>) -> bool {
-    /// Maximum number of variables; greater than the number that can be enumerated, because some may have only one
-    /// value.
+    /// Maximum number of variables. It is greater than the number that can be enumerated, because some variables may
+    /// have only one possible value.
     const MOST: usize = 4 * VARIABLES;
     let ScopedCondition { condition, bracket, when } = read;
     let timer = |nanos| match when {

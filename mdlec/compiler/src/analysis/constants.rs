@@ -1,5 +1,5 @@
-//! Finds conditions that are never true, or that are true whenever they are first read, regardless of the enclosing
-//! scopes (W0203).
+//! Finds conditions that are never true, or that are always true when they are first evaluated, regardless of the
+//! enclosing scopes (W0203).
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Machine;
 use crate::plan::{Condition, Interrupt, condition_text};
 
-/// Evaluation of conditions without regard to enclosing scopes, on the assumption that every signal is a number.
+/// Evaluates conditions without regard to enclosing scopes, assuming that no signal is NaN.
 pub(super) struct ConstantConditions<'l> {
     alone: KnownFacts<'l>,
 }
@@ -27,13 +27,14 @@ impl<'l> ConstantConditions<'l> {
         Self { alone: KnownFacts::of_numbers(machine) }
     }
 
-    /// Returns `true` if it is possible that an interrupt has not fired when the scope of this bracket is entered.
+    /// Returns `true` if it is possible that the interrupt of this bracket has not fired when the bracket's scope is
+    /// entered.
     pub(super) fn stays(&self, bracket: u32, condition: &'l Condition) -> bool {
         self.alone.stays(bracket, condition, When::Entered)
     }
 
-    /// Returns a warning about an interrupt that has fired whenever its scope is entered, or that has an operand that
-    /// is never true. There is no warning about `null` and `wait inf`, which never fire on purpose.
+    /// Returns a warning about an interrupt that has always fired when its scope is entered, or about an operand that
+    /// is never true. There is no warning about `null` and `wait inf`, whose purpose is never to fire.
     pub(super) fn lint(&self, bracket: u32, interrupt: &'l Interrupt) -> Option<Diagnostic> {
         let condition = &interrupt.condition;
         let remembers =
@@ -68,7 +69,7 @@ impl<'l> ConstantConditions<'l> {
         Some(never_true(lint, operands, &text, span))
     }
 
-    /// Returns the warning about an interrupt that has fired whenever its scope is entered.
+    /// Returns the warning about an interrupt that has always fired when its scope is entered.
     fn skipped(&self, bracket: u32, interrupt: &'l Interrupt) -> Diagnostic {
         let (condition, text, span) = (&interrupt.condition, &interrupt.text, interrupt.span);
         let (what, skipped) = self.what(bracket);
@@ -98,8 +99,8 @@ impl<'l> ConstantConditions<'l> {
         }
     }
 
-    /// Returns the kind of a bracket's scope in words, and the effect of an interrupt that has fired when the scope is
-    /// entered.
+    /// Returns two phrases for a message: the kind of a bracket's scope, and the effect of an interrupt that has
+    /// already fired when the scope is entered.
     fn what(&self, bracket: u32) -> (&'static str, &'static str) {
         match bracket {
             0 => ("plan", "is over before it begins"),
@@ -160,9 +161,9 @@ impl<'l> ConstantConditions<'l> {
         self.alone.is_possible(&wanted.collect::<Vec<_>>(), &BTreeMap::new())
     }
 
-    /// Returns the text of an operand of the interrupt's OR as written in the plan; the condition may differ from it,
-    /// since it contains, for example, `null` for `wait inf`. If the written text has another number of operands,
-    /// returns the text of the operand in the condition.
+    /// Returns an operand of the interrupt's OR as written in the plan. This may differ from the text of the condition,
+    /// in which, for example, `null` replaces `wait inf`. If the written text does not have the same number of
+    /// operands, returns the text of the condition's operand.
     fn written(&self, operand: &Condition, interrupt: &Interrupt) -> String {
         let operands = interrupt.condition.operands();
         let texts = operands_of(&interrupt.text);
@@ -176,7 +177,7 @@ impl<'l> ConstantConditions<'l> {
     }
 }
 
-/// Returns the operands of an OR in the text of a condition, outside of all parentheses.
+/// Returns the operands of an OR in the text of a condition; ORs inside parentheses are not split.
 fn operands_of(text: &str) -> Vec<&str> {
     let (mut depth, mut from, mut found) = (0_u32, 0, Vec::new());
     for (at, letter) in text.char_indices() {
@@ -194,12 +195,12 @@ fn operands_of(text: &str) -> Vec<&str> {
     found
 }
 
-/// Returns `true` if a condition can obviously have both values.
+/// Returns `true` if it is obvious that a condition can have both values.
 fn is_open(condition: &Condition) -> bool {
     matches!(condition, Condition::Quark(_) | Condition::Wait { nanos: 1.., .. } | Condition::After(_))
 }
 
-/// Adds to a warning the advice to replace or to remove an operand that is never true.
+/// Adds to a warning the advice to replace or remove an operand that is never true.
 fn never_true(lint: Diagnostic, operands: &[Condition], text: &str, span: Span) -> Diagnostic {
     match operands {
         [_] => lint.fix("if it is never to fire, write {}", span, "(null)"),

@@ -13,16 +13,16 @@ use crate::plan::Condition;
 /// Maximum duration of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Longest {
-    /// At most `nanos` nanoseconds and `turns` periods of a turn.
+    /// The duration is at most `nanos` nanoseconds plus `turns` periods of a turn.
     Bounded { nanos: u128, turns: u64 },
-    /// No bound, because this bracket, an atom or a loop, may continue forever.
+    /// There is no bound, because this bracket, an atom or a loop, may continue forever.
     Unbounded(u32),
 }
 
 impl Longest {
     const NONE: Self = Self::Bounded { nanos: 0, turns: 0 };
 
-    /// Returns the duration of `self` followed by `next`.
+    /// Returns the total duration of `self` and then `next`.
     fn then(self, next: Self) -> Self {
         match (self, next) {
             (Self::Bounded { nanos, turns }, Self::Bounded { nanos: more, turns: further }) => {
@@ -34,7 +34,8 @@ impl Longest {
         }
     }
 
-    /// Returns the duration of the loop with this bracket if it has `times` passes; 0 means an endless loop.
+    /// Returns the duration of a loop with `times` passes, where `self` is the duration of one pass; 0 passes mean an
+    /// endless loop. `bracket` is the number of the loop's bracket.
     fn times(self, times: u64, bracket: u32) -> Self {
         match self {
             Self::Bounded { .. } if times == 0 => Self::Unbounded(bracket),
@@ -45,7 +46,7 @@ impl Longest {
         }
     }
 
-    /// Returns the shorter of two bounds that both hold.
+    /// Returns the shorter of two upper bounds of the same duration.
     fn or(self, other: Self) -> Self {
         match (self, other) {
             (Self::Bounded { nanos, turns }, Self::Bounded { nanos: more, turns: further }) => {
@@ -57,7 +58,7 @@ impl Longest {
     }
 }
 
-/// Returns the upper bound of the plan's duration: the sum over all elements that run.
+/// Returns the upper bound of the plan's duration, which is the sum of the bounds of all elements that run.
 pub(super) fn longest(machine: &Machine, found: &[BracketFacts], most: Most) -> Longest {
     let mut inside = vec![Longest::NONE; machine.elements().len()];
     // The last element first: then the elements inside and after an element are known.
@@ -82,7 +83,7 @@ pub(super) fn longest(machine: &Machine, found: &[BracketFacts], most: Most) -> 
     Longest::NONE
 }
 
-/// Returns `longest` with the additional turns of a search for the next atom that exceeds the limit of a turn: each
+/// Adds to `longest` the turns in which a search for the next atom stops at the limit of transitions in a turn. Each
 /// such turn makes the maximum number of transitions, and each transition leads to another state.
 fn searched(longest: Longest, machine: &Machine, most: Most) -> Longest {
     match longest {
@@ -94,8 +95,8 @@ fn searched(longest: Longest, machine: &Machine, most: Most) -> Longest {
     }
 }
 
-/// Returns the time in nanoseconds after which a condition has certainly fired (`fired` is `true`), or certainly has
-/// not (`fired` is `false`); `None` if no such time is known.
+/// Returns the time, in nanoseconds, after which a condition has certainly fired (`fired` is `true`) or has certainly
+/// not fired (`fired` is `false`); `None` if no such time is known.
 fn certain(condition: &Condition, fired: bool) -> Option<u64> {
     let any = |operands: &[Condition]| operands.iter().filter_map(|operand| certain(operand, fired)).min();
     let all = |operands: &[Condition]| {

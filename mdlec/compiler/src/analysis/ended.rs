@@ -1,8 +1,8 @@
-//! Determines the facts that records can hold: a label whose element never ends is never in its record
+//! Determines the facts that records can contain. If an element never ends, its label never gets into its record
 //! (docs/src/reference/semantics.md, 2.3).
 //!
-//! Which elements can end depends on the conditions that test the records. So the analysis begins without facts, and
-//! repeats its walk until the walk finds no new fact.
+//! Which elements can end depends on the conditions that test the records. Therefore, the analysis begins without
+//! facts, and repeats its walk until no new fact is found.
 
 use std::collections::BTreeSet;
 
@@ -11,10 +11,11 @@ use super::walk::{BracketFacts, OperandOutcome, PlanFacts, Reach, walk};
 use crate::fsm::{Element, ElementKind, Machine};
 use crate::plan::RecordId;
 
-/// Walks over a machine repeatedly until a walk finds no new fact of its records. `one_turn` is passed to [`walk`].
+/// Walks over a machine repeatedly, until a walk finds no new fact that its records can contain. `one_turn` is passed
+/// to [`walk`].
 pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> PlanFacts {
-    /// Maximum number of walks: each walk but the last finds elements that can end only because of facts from the
-    /// previous walk.
+    /// Maximum number of walks. Each walk except the last finds elements that can end only because of facts that the
+    /// previous walk has found.
     const WALKS: usize = 8;
     let mut facts = BTreeSet::new();
     for _ in 1..WALKS {
@@ -28,7 +29,7 @@ pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> PlanFacts 
     walk(machine, one_turn, &PossibleFacts::Any)
 }
 
-/// Returns the facts that elements record if they can end according to `found`.
+/// Returns the facts that are recorded by elements that can end according to `found`.
 fn recorded(machine: &Machine, found: &[BracketFacts]) -> BTreeSet<(RecordId, u32)> {
     let mut ends = vec![false; found.len()];
     let mut facts = BTreeSet::new();
@@ -47,7 +48,7 @@ fn recorded(machine: &Machine, found: &[BracketFacts]) -> BTreeSet<(RecordId, u3
     facts
 }
 
-/// Returns `true` if an element can end; `ends` has the answers for the elements inside it.
+/// Returns `true` if an element can end; `ends` contains this result for the elements inside it.
 fn can_end(element: Element<'_>, found: &BracketFacts, ends: &[bool]) -> bool {
     let inside = || element.children().last().is_some_and(|last| ends[last.index()]);
     let by_its_body = match element.kind() {

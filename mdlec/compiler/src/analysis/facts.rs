@@ -1,4 +1,4 @@
-//! The facts that records can hold (docs/src/reference/semantics.md, 2.3).
+//! The facts that records can contain (docs/src/reference/semantics.md, 2.3).
 
 use std::collections::BTreeSet;
 
@@ -7,9 +7,9 @@ use crate::plan::RecordId;
 /// The facts of records that may become true in some run.
 #[derive(Debug, Clone)]
 pub(super) enum PossibleFacts {
-    /// Only these facts, each with its record and its number in the record.
+    /// Only these facts may become true. Each consists of its record and its number in the record.
     Only(BTreeSet<(RecordId, u32)>),
-    /// Any fact: the question was too large to decide.
+    /// Any fact may become true, because the question was too large to decide.
     Any,
 }
 

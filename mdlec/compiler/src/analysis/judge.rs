@@ -1,5 +1,5 @@
-//! Determines the operands that can end a scope, and the scopes that are always skipped, from the facts that are known
-//! where the scope is entered.
+//! Determines the operands that can end a scope, and the scopes that are always skipped, from facts that are known when
+//! the scope is entered.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,8 +10,8 @@ use super::walk::{AnalysisWalk, BracketFacts, OperandOutcome, Reach, Skip};
 use crate::plan::Condition;
 
 impl<'l> AnalysisWalk<'l> {
-    /// Determines the operands that can end a scope; returns the earliest time at which the scope can end, or `None` if
-    /// it is never reached or never ends by itself.
+    /// Determines the operands that can end a scope; returns the earliest time at which the scope can end, `None` if
+    /// the scope is never reached or never ends by itself.
     pub(super) fn judge(&mut self, number: u32, found: &mut BracketFacts) -> Option<u64> {
         let clock = self.clock?;
         let condition = self.element(number).condition();
@@ -57,7 +57,7 @@ impl<'l> AnalysisWalk<'l> {
     /// scope.
     fn earliest(&self, operand: &'l Condition, number: u32) -> Option<u64> {
         /// Maximum number of timers in an operand that are examined: the operand is checked for each number of timers
-        /// that have already ended. An operand with more timers counts as possible at any time if it is possible at
+        /// that have already ended. An operand with more timers is treated as possible at any time if it is possible at
         /// all.
         const TIMERS: usize = 8;
         let asked = [ConditionQuestion { any: vec![self.read(operand, number, When::Later)], fired: true }];
@@ -83,7 +83,7 @@ impl<'l> AnalysisWalk<'l> {
         over.map(|over| over.checked_sub(1).map_or(0, |last| timers[last].1))
     }
 
-    /// Returns the reason why an operand cannot end its scope.
+    /// Returns the reason why an operand cannot end its scope; `number` is the number of the scope's bracket.
     fn blame(&self, operand: &'l Condition, number: u32) -> OperandOutcome {
         let read = self.read(operand, number, When::Later);
         if let Condition::Wait { quark, .. } = operand

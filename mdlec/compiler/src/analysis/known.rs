@@ -14,7 +14,8 @@ use crate::fsm::Machine;
 use crate::plan::families::{Family, Readings, family};
 use crate::plan::{Condition, QuarkId};
 
-/// Maximum number of conditions of enclosing scopes that are considered for each variable of a question.
+/// Maximum number of conditions that are considered for each variable of a question. These are conditions of enclosing
+/// scopes.
 const CLAUSES: usize = 8;
 
 /// A question about conditions: is it possible that at least one of the conditions has fired (if `fired` is `true`), or
@@ -25,24 +26,25 @@ pub(super) struct ConditionQuestion<'l> {
     pub(super) fired: bool,
 }
 
-/// Facts that are known at a place of a plan.
+/// Facts that are known at a position in a plan.
 #[derive(Debug)]
 pub(super) struct KnownFacts<'l> {
     pub(super) machine: &'l Machine,
-    /// Earliest entry of the scope of each bracket, in nanoseconds since the plan began.
+    /// Earliest time at which the scope of each bracket is entered, in nanoseconds since the plan began.
     pub(super) entered: Vec<u64>,
-    /// Variables that can have only one value, because otherwise an enclosing scope would have ended; each with the
-    /// value and the scope's bracket.
+    /// Variables that can have only one value, because with the other value an enclosing scope would have ended. Each
+    /// has its value and the bracket of that scope.
     units: BTreeMap<Variable, (bool, u32)>,
-    /// Times at which timers of enclosing scopes end if each scope is entered at its time in `entered`, each with the
-    /// scope's bracket; in descending order.
+    /// Times at which the timers of enclosing scopes end if each scope is entered at its time in `entered`. Each has
+    /// the bracket of its scope; the order is descending.
     deadlines: Vec<(u64, u32)>,
-    /// Path lengths at which enclosing scopes end, in nanometres, each with the scope's bracket; in descending order.
+    /// Lengths of the driven path, in nanometres, at which enclosing scopes end. Each has the bracket of its scope; the
+    /// order is descending.
     distances: Vec<(u64, u32)>,
-    /// Other conditions of enclosing scopes that have not fired, by the variables in them.
+    /// Other conditions of enclosing scopes that have not fired, listed for each variable that they contain.
     clauses: BTreeMap<Variable, Vec<ScopedCondition<'l>>>,
     families: BTreeMap<Family<'l>, BTreeSet<QuarkId>>,
-    /// Facts that `after` may find in a record.
+    /// Facts that `after` can find in a record.
     recorded: PossibleFacts,
     readings: Readings,
 }
@@ -71,25 +73,25 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns the facts at a place without enclosing scopes, on the assumption that every signal is a number.
+    /// Returns the facts that are known without enclosing scopes, assuming that no signal is NaN.
     pub(super) fn of_numbers(machine: &'l Machine) -> Self {
         Self { readings: Readings::Numbers, ..Self::new(machine, &PossibleFacts::Any) }
     }
 
-    /// Returns the earliest time at which a timer of an enclosing scope ends, with the bracket of that scope; `None` if
+    /// Returns the earliest time at which a timer of an enclosing scope ends, and the bracket of this scope; `None` if
     /// there is no such timer.
     pub(super) fn deadline(&self) -> Option<(u64, u32)> {
         self.deadlines.last().copied()
     }
 
-    /// Returns the bracket of the enclosing scope that leaves a variable only one value; `None` if there is no such
+    /// Returns the bracket of the enclosing scope that restricts a variable to one value; `None` if there is no such
     /// scope.
     pub(super) fn unit(&self, variable: Variable) -> Option<u32> {
         self.units.get(&variable).map(|(_, bracket)| *bracket)
     }
 
-    /// Returns the shortest path length, in nanometres, at which the scope of `bracket` or an enclosing scope ends,
-    /// with the bracket of that scope; `None` if there is no such length.
+    /// Returns the shortest length of path, in nanometres, at which the scope of `bracket` or an enclosing scope ends,
+    /// and the bracket of the scope that ends; `None` if there is no such length.
     pub(super) fn distance(&self, bracket: u32) -> Option<(u64, u32)> {
         self.distances.iter().rev().find(|(_, outer)| *outer <= bracket).copied()
     }
@@ -110,7 +112,8 @@ impl<'l> KnownFacts<'l> {
         unit.or_else(clause).or_else(relative).or_else(distance)
     }
 
-    /// Adds the facts that follow if the interrupt of this bracket has not fired; returns what `close` has to remove.
+    /// Adds the facts that follow from the assumption that the interrupt of this bracket has not fired. Returns the
+    /// added facts, which `close` has to remove.
     pub(super) fn open(&mut self, bracket: u32, condition: &'l Condition) -> Assumptions {
         let mut added = Assumptions::default();
         for condition in flat(condition) {
@@ -150,7 +153,7 @@ impl<'l> KnownFacts<'l> {
         added
     }
 
-    /// Removes the facts that a scope added.
+    /// Removes the facts that `open` added for a scope.
     pub(super) fn close(&mut self, added: Assumptions) {
         for variable in added.units {
             self.units.remove(&variable);
@@ -167,7 +170,7 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Records that the scope of this bracket ends after a path of this length.
+    /// Records that the scope of this bracket ends after a path of `nanometers`.
     fn add_distance(&mut self, nanometers: u64, bracket: u32, added: &mut Assumptions) {
         match self.distances.last_mut() {
             Some((shortest, _)) if *shortest <= nanometers => {}
@@ -190,7 +193,7 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns quarks whose values are known, from the families of the quarks in `variables`.
+    /// Returns the quarks with known values that belong to the same families as the quarks in `variables`.
     fn relatives(&self, variables: &BTreeSet<Variable>) -> Vec<Variable> {
         let mut found = Vec::new();
         for variable in variables {
@@ -216,8 +219,8 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns the only variable of a condition, with the value at which the condition has not fired; `None` for a
-    /// condition other than a single quark, `wait` or `after` and their negations.
+    /// Returns the only variable of a condition, and the value with which the condition has not fired. Returns `None`
+    /// unless the condition is a single quark, `wait` or `after`, or the negation of one of these.
     fn unit_of(&self, read: ScopedCondition<'l>) -> Option<(Variable, bool)> {
         let leaf = |condition: &'l Condition| {
             let mut variables = BTreeSet::new();
@@ -231,12 +234,13 @@ impl<'l> KnownFacts<'l> {
         leaf(read.condition).map(|variable| (variable, false))
     }
 
-    /// Collects the variables of a condition, known or not, in `found`; returns `false` if there are too many.
+    /// Collects all variables of a condition in `found`, whether their values are known or not. Returns `false` if
+    /// there are too many variables.
     pub(super) fn variables(&self, read: ScopedCondition<'l>, found: &mut BTreeSet<Variable>) -> bool {
         choices::variables(read, self.machine, found)
     }
 
-    /// Returns the value of a variable at this place; `None` if both values may be possible.
+    /// Returns the value of a variable at this position; `None` if both values may be possible.
     fn known(&self, variable: Variable) -> Option<bool> {
         if let Variable::Way(bracket, nanometers) = variable {
             // The path since the entry of an outer scope is at least as long.
@@ -261,8 +265,8 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns `true` if the answer to all questions in `wanted` can be yes in the same turn; `fixed` contains
-    /// variables with the values that they are assumed to have.
+    /// Returns `true` if the answers to all questions in `wanted` can be yes in the same turn. `fixed` contains
+    /// variables whose values are assumed.
     pub(super) fn is_possible(&self, wanted: &[ConditionQuestion<'l>], fixed: &BTreeMap<Variable, bool>) -> bool {
         let mut variables = BTreeSet::new();
         let reads = wanted.iter().flat_map(|wanted| &wanted.any);
@@ -296,7 +300,7 @@ impl<'l> KnownFacts<'l> {
         table.is_possible()
     }
 
-    /// Returns `true` if it is possible that an interrupt has not fired.
+    /// Returns `true` if it is possible that the interrupt of this bracket has not fired.
     pub(super) fn stays(&self, bracket: u32, condition: &'l Condition, when: When) -> bool {
         let not = |condition| {
             let any = vec![ScopedCondition { condition, bracket, when }];
@@ -307,8 +311,8 @@ impl<'l> KnownFacts<'l> {
         operands.iter().all(not) && (operands.len() == 1 || not(condition))
     }
 
-    /// Returns conditions of enclosing scopes that have not fired and share variables with `all`, as long as the number
-    /// of free variables permits. Adds their variables to `all`.
+    /// Returns conditions of enclosing scopes that have not fired and that share variables with `all`. Adds their
+    /// variables to `all`, and stops when there would be too many free variables.
     fn clauses(
         &self,
         all: &mut BTreeSet<Variable>,
@@ -333,7 +337,7 @@ impl<'l> KnownFacts<'l> {
     }
 }
 
-/// Returns the operands of an OR; nested ORs are flattened.
+/// Returns the operands of an OR, including the operands of nested ORs.
 fn flat(condition: &Condition) -> Vec<&Condition> {
     let (mut waiting, mut operands) = (vec![condition], Vec::new());
     while let Some(condition) = waiting.pop() {

@@ -85,7 +85,7 @@ impl<'l> Lints<'l> {
         })
     }
 
-    /// Returns the warning about an operand that tests a record for a fact that is never in it.
+    /// Returns the warning about an operand that tests a record for a fact that the record never contains.
     fn unrecorded(&self, interrupt: &Interrupt, found: &BracketFacts) -> Option<Diagnostic> {
         let operands = interrupt.condition.operands();
         let asks = |operand: &Condition| operand.any(&|part| matches!(part, Condition::After(_)));
@@ -124,8 +124,8 @@ impl<'l> Lints<'l> {
         Some(lint.fix("wait here until it becomes true again: {}", span, format!("(RISING ({text}))")))
     }
 
-    /// Returns the warning about an element that is never reached, because the element before it never ends before an
-    /// enclosing scope ends.
+    /// Returns the warning about an element that is never reached, because an enclosing scope always ends before the
+    /// previous element ends.
     fn cut_off(&self, interrupt: &Interrupt, before: u32) -> Diagnostic {
         let lint = Diagnostic::new(Code::W0202, "this is never reached", interrupt.span, "never runs");
         let before = self.machine.element(before).interrupt().map(|before| before.span);
@@ -136,7 +136,7 @@ impl<'l> Lints<'l> {
         lint.help("let the element before it end earlier, or the enclosing scope end later")
     }
 
-    /// Returns the scope of a bracket in words, with the place of its interrupt.
+    /// Returns a phrase for the scope of a bracket, and the span of the scope's interrupt.
     fn whose(&self, bracket: u32) -> (String, Span) {
         let element = self.machine.element(bracket);
         let name = Some(element.name()).filter(|name| !name.is_empty());
@@ -145,12 +145,13 @@ impl<'l> Lints<'l> {
     }
 }
 
-/// Returns `true` if an element is an atom whose law never completes, and another element follows it in its string.
+/// Returns `true` if an element is an atom whose law never completes, and another element follows the atom in its
+/// string.
 fn goes_on(element: Element<'_>) -> bool {
     element.atom().is_some_and(|atom| !atom.law().completes) && matches!(element.exit(), Exit::Next(_))
 }
 
-/// Returns the warning about an element that is skipped because the element before it ends by the same condition.
+/// Returns the warning about an element that is always skipped, because its condition also ends the element before it.
 fn repeated(element: Element<'_>, interrupt: &Interrupt, before: &Interrupt) -> Diagnostic {
     let (span, text) = (interrupt.span, &interrupt.text);
     let message = format!("`{text}` ends the element before this as well, so this is always skipped");
@@ -171,8 +172,7 @@ fn repeated(element: Element<'_>, interrupt: &Interrupt, before: &Interrupt) -> 
     lint.fix("or wait here until it becomes true again: {}", span, rising)
 }
 
-/// Returns the text of a scope's condition with the operator `word` (NOT or RISING) before it, in parentheses where
-/// needed.
+/// Returns the text of a scope's condition after the operator `word` (NOT or RISING), in parentheses where needed.
 fn negated(word: &str, interrupt: &Interrupt) -> String {
     let text = &interrupt.text;
     if matches!(interrupt.condition, Condition::Quark(_)) {

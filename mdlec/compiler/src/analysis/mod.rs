@@ -1,5 +1,5 @@
-//! Static analysis: determines, without running a plan, facts that hold in every run: the atoms that run, the operands
-//! that can end them, durations, and the size of the machine.
+//! Static analysis: determines facts that hold in every run, without running the plan. Examples are the atoms that run,
+//! the operands that can end atoms, durations, and the size of the machine.
 //!
 //! "Never" holds for every run; "possible" may also mean that the question was too large to decide.
 
@@ -39,18 +39,18 @@ pub struct Analysis {
     pub plan: String,
     /// Number of states of the plan's machine, including the termination state.
     pub states: u64,
-    /// Number of atoms as written, including the atoms of plans that are used by name.
+    /// Number of atoms as written (before loops are expanded), including the atoms of plans that are used by name.
     pub atom_count: usize,
-    /// Number of interrupts as written that can fire, without `null` and removed interrupts.
+    /// Number of interrupts as written that can fire; `null` and removed interrupts are not counted.
     pub interrupts: usize,
-    /// Maximum number of nested scopes, including the plan and the atom's own scope.
+    /// Maximum number of nested scopes, counting the plan and the atom's own scope.
     pub depth: usize,
     /// Maximum number of loops that enclose an atom.
     pub loop_depth: usize,
     /// Maximum number of transitions in one turn.
     pub transitions: u64,
-    /// Maximum number of turns from the turn in which an interrupt fires to the turn that begins by sending the next
-    /// atom's input; `None` if the search for the next atom may continue forever.
+    /// Maximum number of turns between the turn in which an interrupt fires and the turn that begins by sending the
+    /// next atom's input; `None` if the search for the next atom may continue forever.
     pub reaction_turns: Option<u64>,
     /// Minimum time until the plan ends, in seconds; `None` if it never ends.
     pub shortest: Option<f64>,
@@ -69,8 +69,8 @@ pub struct Analysis {
 pub struct Duration {
     /// Duration in seconds; `None` if there is no bound.
     pub seconds: Option<f64>,
-    /// Number of turn periods to add to `seconds`, because each timer is read once per turn and may end up to a period
-    /// late; `None` if there is no bound.
+    /// Number of turn periods to add to `seconds`. They are needed because each timer is read once per turn, and so may
+    /// end up to one period late. `None` if there is no bound.
     pub turns: Option<u64>,
     /// Reason why there is no bound; `None` if there is a bound.
     pub because: Option<String>,
@@ -79,7 +79,7 @@ pub struct Duration {
 /// Facts about a scope other than an atom.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ScopeAnswer {
-    /// Number of the scope; 1 is the plan.
+    /// Number of the scope; the plan has number 1.
     pub scope: usize,
     /// Number of the enclosing scope; `None` for the plan.
     pub within: Option<usize>,
@@ -98,9 +98,9 @@ pub struct ScopeAnswer {
 /// Facts about an atom.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AtomAnswer {
-    /// Number of the atom, from 1, among the atoms as written.
+    /// Number of the atom, counting from 1 in the order of the plan's text.
     pub atom: usize,
-    /// Number of the atom's state, in the first pass of every enclosing loop.
+    /// Number of the atom's state in the first pass of all enclosing loops.
     pub state: u64,
     /// Number of the enclosing scope.
     pub within: usize,
@@ -112,7 +112,7 @@ pub struct AtomAnswer {
     pub ended_by: Vec<String>,
     /// Operands of the atom's interrupt by which it never ends.
     pub never_by: Vec<String>,
-    /// `true` if the atom can end, by itself or with an enclosing scope.
+    /// `true` if the atom can end, either by itself or together with an enclosing scope.
     pub ends: bool,
 }
 
@@ -147,7 +147,7 @@ pub fn analyze(machine: &Machine) -> Analysis {
     }
 }
 
-/// Returns `true` if a scope of a machine can end because its last element ends, and not only by its own condition.
+/// Returns `true` if a scope can end because its last element ends, and not only because of its own condition.
 #[must_use]
 pub fn body_ends(machine: &Machine, scope: Element<'_>) -> bool {
     let most = transitions::most(machine);
@@ -155,7 +155,7 @@ pub fn body_ends(machine: &Machine, scope: Element<'_>) -> bool {
     walked.found.get(scope.index()).is_some_and(|found| found.body_ends)
 }
 
-/// Returns the maximum number of turns from the firing of an interrupt to the input of the next atom; `None` if the
+/// Returns the maximum number of turns between the firing of an interrupt and the input of the next atom; `None` if the
 /// search for the next atom may continue forever. The input is sent at the beginning of the next turn. A search that
 /// reaches the limit of a turn continues in the next turn.
 fn reaction(machine: &Machine, most: transitions::Most) -> Option<u64> {
@@ -241,8 +241,8 @@ impl Answers {
     }
 }
 
-/// Returns the texts of the operands by which an interrupt can fire, and the texts of those by which it cannot, both
-/// without `null`.
+/// Returns the texts of the operands by which an interrupt can fire, and the texts of the operands by which it cannot
+/// fire, without `null`.
 fn by(condition: &Condition, found: &BracketFacts, machine: &Machine) -> (Vec<String>, Vec<String>) {
     let (mut can, mut never) = (Vec::new(), Vec::new());
     for (operand, outcome) in condition.operands().iter().zip(&found.operands) {

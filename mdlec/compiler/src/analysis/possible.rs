@@ -1,5 +1,5 @@
-//! Determines which values of variables are possible at the same time: timers start in a known order, at the entries of
-//! their scopes, and a signal has one value.
+//! Determines which combinations of values of variables are possible in the same turn. Timers start in a known order,
+//! when their scopes are entered, and a signal has only one value.
 
 use std::collections::BTreeMap;
 
@@ -9,9 +9,9 @@ use super::variables::Variable;
 use crate::plan::Quark;
 use crate::plan::families::{Family, Readings, at_once, family};
 
-/// Returns the table of possible choices, in which all variables can have their values at the same time. `entered`
-/// returns the earliest entry of a scope; the brackets of timers are nested, and the outer bracket has the smaller
-/// number.
+/// Returns the table of the possible choices, in which all variables can have their values in the same turn. `entered`
+/// returns the earliest time at which a scope is entered. The brackets of timers are nested; an outer bracket has a
+/// smaller number.
 pub(super) fn possible(
     choices: &Choices,
     quarks: &[Quark],

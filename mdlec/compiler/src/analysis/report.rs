@@ -1,10 +1,10 @@
-//! Writes an analysis as text, with the figures of the plan and tables of its scopes and atoms, or as JSON.
+//! Writes an analysis, either as text with the figures of the plan and tables of its scopes and atoms, or as JSON.
 
 use std::fmt::Write;
 
 use super::{Analysis, AtomAnswer, Duration, Reach, ScopeAnswer};
 
-/// Maximum number of enclosing scopes that are listed as causes of an atom's end.
+/// Maximum number of enclosing scopes that the report lists as causes of an atom's end.
 const AROUND: usize = 3;
 
 impl Analysis {
@@ -108,13 +108,13 @@ fn longest(longest: &Duration) -> String {
     }
 }
 
-/// Returns a number with its noun: `1 atom`, `2 atoms`.
+/// Returns a number followed by its noun: `1 atom`, `2 atoms`.
 fn count(number: u64, thing: &str) -> String {
     if number == 1 { format!("1 {thing}") } else { format!("{number} {thing}s") }
 }
 
-/// Formats rows as a table. Each column is as wide as its widest cell, up to the length of a line; an empty last column
-/// is left out.
+/// Formats rows as a table. Each column is as wide as its widest cell, up to the length of a line. An empty last column
+/// is omitted.
 fn table<const COLUMNS: usize>(heads: [&str; COLUMNS], rows: &[Vec<String>]) -> String {
     const WIDEST: usize = 48;
     let shown = if rows.iter().all(|row| row.last().is_none_or(String::is_empty)) { COLUMNS - 1 } else { COLUMNS };

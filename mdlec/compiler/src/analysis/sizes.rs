@@ -1,4 +1,5 @@
-//! Computes the size of the emitted machine, in bytes: the state that it keeps between turns, and its tables.
+//! Computes the size of the emitted machine, in bytes: the size of the state that it keeps between turns, and of its
+//! tables.
 
 use std::collections::BTreeSet;
 
@@ -17,14 +18,14 @@ const PLACE: usize = 16;
 pub struct MachineSizes {
     /// Form of the emitted plan: `code` or `rows`.
     pub form: &'static str,
-    /// Size of the state that the machine keeps between turns, without the running law: position in the plan, times of
-    /// entry, frame.
+    /// Size of the state that the machine keeps between turns: position in the plan, times of entry, and frame. The
+    /// running law is not included.
     pub state: u64,
     /// Size of the memories of RISING and `after`.
     pub memories: u64,
     /// Size of the tables of brackets and atoms.
     pub machine: u64,
-    /// Size of the texts that the machine shows: a reference for each use of a text, and the bytes of each different
+    /// Size of the texts that the machine shows: one reference for each use of a text, and the bytes of each different
     /// text once.
     pub texts: u64,
 }

@@ -1,13 +1,13 @@
-//! Truth tables, with one bit for every combination of the values of some variables, in words of 64 bits.
+//! Truth tables with one bit for each combination of the values of some variables, stored in words of 64 bits.
 
 /// Maximum number of variables for which all choices are enumerated.
 pub(super) const VARIABLES: usize = 12;
 
-/// A truth table, indexed by the number of the choice: bit `i` of that number is the value of variable `i`.
+/// A truth table. The index of a bit is the number of the choice, in which bit `i` is the value of variable `i`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TruthTable(Vec<u64>);
 
-/// Truth tables of the first six variables, in one word each.
+/// Truth tables of the first six variables, each of which fits into one word.
 const SHORT: [u64; 6] = [
     0xAAAA_AAAA_AAAA_AAAA,
     0xCCCC_CCCC_CCCC_CCCC,
@@ -18,13 +18,13 @@ const SHORT: [u64; 6] = [
 ];
 
 impl TruthTable {
-    /// Returns a table for `variables` variables with `value` in every choice.
+    /// Returns a table for `variables` variables that contains `value` for every choice.
     pub(super) fn constant(variables: usize, value: bool) -> Self {
         let words = 1_usize << variables.saturating_sub(SHORT.len());
         Self(vec![if value { u64::MAX } else { 0 }; words])
     }
 
-    /// Returns a table for `variables` variables that is true where the variable `index` is true.
+    /// Returns a table for `variables` variables that is true for the choices in which the variable `index` is true.
     pub(super) fn variable(variables: usize, index: usize) -> Self {
         let mut table = Self::constant(variables, false);
         for (number, word) in table.0.iter_mut().enumerate() {

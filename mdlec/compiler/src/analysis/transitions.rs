@@ -1,8 +1,8 @@
 //! Computes the maximum number of transitions in one turn (docs/src/reference/semantics.md, 5.5).
 //!
-//! All conditions of a turn read the same output at the same time. If there are few interrupt quarks, the transitions
-//! are therefore counted for each choice of the quarks' values. Otherwise each quark may have another value whenever it
-//! is read, and the count is an upper bound.
+//! All conditions of a turn read the same output at the same time. Therefore, if there are few interrupt quarks, the
+//! transitions are counted for each choice of the quarks' values. Otherwise, the count assumes that a quark may have
+//! another value each time it is read, and is an upper bound.
 
 use std::collections::BTreeSet;
 
@@ -15,7 +15,7 @@ use crate::fsm::{ElementKind, Machine};
 use crate::plan::families::Readings;
 use crate::plan::{Condition, Interrupt, QuarkId};
 
-/// Maximum number of transitions in one turn, at most the number that the machine allows.
+/// Maximum number of transitions in one turn; not more than the machine allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Most {
     pub(super) count: u64,
@@ -27,7 +27,7 @@ pub(super) struct Most {
 pub(super) fn most(machine: &Machine) -> Most {
     /// Maximum number of quarks for which every choice is counted.
     const QUARKS: usize = 8;
-    /// Maximum product of the number of brackets and the number of choices.
+    /// Maximum product of the number of brackets and the number of choices up to which every choice is counted.
     const WORK: usize = 2_000_000;
     let mut quarks: Vec<QuarkId> = Vec::new();
     for element in machine.elements() {
@@ -52,23 +52,23 @@ pub(super) fn most(machine: &Machine) -> Most {
     Most { count: count.min(limit), is_cut: count > limit }
 }
 
-/// Maximum lengths of chains of transitions in an element, or in consecutive elements.
+/// Maximum lengths of chains of transitions within an element, or within consecutive elements.
 #[derive(Debug, Clone, Copy)]
 struct Chains {
-    /// Chain from the beginning to the end, if the element can be passed in one turn.
+    /// Length of a chain from the beginning to the end; `None` if the element cannot be passed in one turn.
     pass: Option<u64>,
-    /// Chain from the beginning to a place inside.
+    /// Length of a chain from the beginning to a position inside.
     first: u64,
-    /// Chain from a place inside to the end, if the element can end.
+    /// Length of a chain from a position inside to the end; `None` if the element cannot end.
     last: Option<u64>,
-    /// Chain between any two places inside.
+    /// Length of a chain between any two positions inside.
     inside: u64,
 }
 
 impl Chains {
     const NONE: Self = Self { pass: Some(0), first: 0, last: None, inside: 0 };
 
-    /// Returns the chains of `self` followed by `next`.
+    /// Returns the chains of `self` and then `next`.
     fn then(self, next: Self) -> Self {
         let last = plus(self.last, next.pass);
         let through = self.last.map_or(0, |last| last.saturating_add(next.first));
@@ -80,7 +80,8 @@ impl Chains {
         }
     }
 
-    /// Returns the chains of `times` passes of `self`; 0 means an endless loop.
+    /// Returns the chains of a loop with `times` passes, where `self` contains the chains of one pass; 0 passes mean an
+    /// endless loop.
     fn times(self, times: u64) -> Self {
         let through = |passes: u64| self.pass.map_or(0, |pass| pass.saturating_mul(passes));
         let again = |passes: u64| self.last.map_or(0, |last| last.saturating_add(through(passes)));
@@ -99,7 +100,7 @@ impl Chains {
         }
     }
 
-    /// Returns the chains of a scope around elements with the chains `self`. `at_once` is the certainty that the
+    /// Returns the chains of a scope that contains elements with the chains `self`. `at_once` is the certainty that the
     /// scope's interrupt has fired in the turn of entry, and `later` the certainty in any turn; `asks_after` is `true`
     /// if the interrupt contains `after`.
     fn within(self, at_once: Certainty, later: Certainty, asks_after: bool) -> Self {
@@ -122,7 +123,8 @@ fn plus(one: Option<u64>, other: Option<u64>) -> Option<u64> {
     Some(one?.saturating_add(other?))
 }
 
-/// Returns the length of the longest chain of transitions if the quarks have the values in the bits of `choice`.
+/// Returns the length of the longest chain of transitions, assuming that the quarks have the values in the bits of
+/// `choice`.
 fn longest(machine: &Machine, quarks: &[QuarkId], choice: usize) -> u64 {
     let mut inside = vec![Chains::NONE; machine.elements().len()];
     // The last element first: then the elements inside and after an element are known.
@@ -148,15 +150,15 @@ fn longest(machine: &Machine, quarks: &[QuarkId], choice: usize) -> u64 {
     0
 }
 
-/// Possibility and necessity of an event.
+/// Tells whether an event is possible, and whether it is certain.
 #[derive(Debug, Clone, Copy)]
 struct Certainty {
     can: bool,
     must: bool,
 }
 
-/// Returns the certainty that a condition has fired, in the turn in which its scope is entered if `entered` is `true`,
-/// and otherwise in any turn.
+/// Returns the certainty that a condition has fired: if `entered` is `true`, in the turn in which its scope is entered;
+/// otherwise, in any turn.
 fn certainty(condition: &Condition, quarks: &[QuarkId], choice: usize, entered: bool) -> Certainty {
     let known = |value| Certainty { can: value, must: value };
     let unknown = Certainty { can: true, must: false };

@@ -1,8 +1,8 @@
-//! Walks over a machine in the order in which it runs, and finds the atoms that run, are skipped or are never reached,
-//! and the operands that can end each scope.
+//! Walks over a machine in the order in which it runs. Finds the atoms that run, are skipped or are never reached, and
+//! the operands that can end each scope.
 //!
-//! One pass over the brackets suffices: [`KnownFacts`] holds the effects of enclosing scopes, and the walk keeps the
-//! earliest time at which a place is reached. A loop's body is walked over once, as its first pass.
+//! One pass over the brackets suffices: [`KnownFacts`] contains the effects of enclosing scopes, and the walk keeps the
+//! earliest time at which a position is reached. The body of a loop is visited once, as its first pass.
 
 use std::collections::BTreeMap;
 use std::iter;
@@ -21,7 +21,8 @@ use crate::plan::{Condition, QuarkId};
 pub enum Reach {
     /// The atom's law may be applied.
     Runs,
-    /// The atom may become the current atom, but then its own interrupt or that of an enclosing scope has always fired.
+    /// The atom may become the current atom, but its own interrupt or the interrupt of an enclosing scope has then
+    /// always fired.
     Skipped,
     /// The atom never becomes the current atom.
     Never,
@@ -37,10 +38,10 @@ pub(super) struct BracketFacts {
     pub(super) completes: bool,
     /// `true` if the bracket can end because its last element ends.
     pub(super) body_ends: bool,
-    /// Reason why the bracket is always skipped, if it is.
+    /// Reason why the bracket is always skipped; `None` if it is not.
     pub(super) skipped: Option<Skip>,
-    /// Number of the previous element if it is the reason why this element is never reached, and if the text alone does
-    /// not show this; `None` otherwise.
+    /// Number of the previous element, if this element is never reached because of it and the text alone does not show
+    /// this; `None` otherwise.
     pub(super) cut_off_by: Option<u32>,
 }
 
@@ -49,7 +50,7 @@ pub(super) struct BracketFacts {
 pub(super) enum Skip {
     /// The element's interrupt has always fired when the element is entered.
     AtOnce,
-    /// The element's interrupt has fired whenever the previous element ends. The number is that of the outermost
+    /// The element's interrupt has always fired when the previous element ends. Contains the number of the outermost
     /// bracket whose interrupt can end the previous element.
     Behind(u32),
     /// An enclosing element is skipped.
@@ -63,29 +64,29 @@ pub(super) enum OperandOutcome {
     Possible,
     /// The operand is never true.
     Never,
-    /// The operand is true only if the interrupt of this bracket, an enclosing scope, has fired as well.
+    /// The operand is true only when the interrupt of this bracket, which is an enclosing scope, has also fired.
     Beaten(u32),
-    /// The operand's timer ends later than a timer of this bracket.
+    /// The operand's timer ends later than a timer of this enclosing bracket.
     Late(u32),
-    /// The operand equals an operand of this bracket's interrupt.
+    /// The operand is the same as an operand of this bracket's interrupt.
     Repeated(u32),
-    /// The operand was not examined, because its place is never reached.
+    /// The operand was not examined, because its scope is never reached.
     Unread,
 }
 
 /// Conditions of which at least one has just fired when an element is entered. The list is empty if nothing is known.
 type RecentlyFired<'l> = Vec<ScopedCondition<'l>>;
 
-/// A bracket that encloses the current place of the walk.
+/// A bracket that encloses the current position of the walk.
 struct EnclosingBracket {
     reach: Reach,
-    /// Earliest entry of the bracket; `None` if it is never entered.
+    /// Earliest time at which the bracket is entered; `None` if it is never entered.
     clock: Option<u64>,
-    /// Earliest end of the scope by its own condition or the completion of its law; `None` if it never ends in this
-    /// way, and for a loop.
+    /// Earliest time at which the scope ends by its own condition or by the completion of its law; `None` if it never
+    /// ends in these ways, and for a loop.
     own: Option<u64>,
     added: Assumptions,
-    /// `true` if, by the text alone, the element before the bracket can end.
+    /// `true` if the text alone permits that the element before the bracket ends.
     written: bool,
 }
 
@@ -95,7 +96,7 @@ pub(super) struct PlanFacts {
     pub(super) shortest: Option<u64>,
 }
 
-/// Walks over a machine whose records can hold the facts `facts`. `one_turn` is `true` if every search for the next
+/// Walks over a machine whose records can contain the facts `facts`. `one_turn` is `true` if every search for the next
 /// atom ends within one turn.
 pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> PlanFacts {
     let mut walk = AnalysisWalk {
@@ -122,20 +123,20 @@ pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> 
 
 pub(super) struct AnalysisWalk<'l> {
     pub(super) world: KnownFacts<'l>,
-    /// Facts that are known at a place without enclosing scopes.
+    /// Facts that are known without enclosing scopes.
     pub(super) alone: KnownFacts<'l>,
     open: Vec<EnclosingBracket>,
     found: Vec<BracketFacts>,
-    /// For each timer, the brackets of the enclosing scopes that have the timer as an operand of their interrupt.
+    /// For each timer, the brackets of the enclosing scopes whose interrupts have the timer as an operand.
     pub(super) waits: BTreeMap<QuarkId, Vec<u32>>,
-    /// Earliest entry of the next element; `None` if it is never entered.
+    /// Earliest time at which the next element is entered; `None` if it is never entered.
     pub(super) clock: Option<u64>,
     pub(super) facts: RecentlyFired<'l>,
-    /// `true` if, by the text alone, the element before the next one can end.
+    /// `true` if the text alone permits that the element before the next element ends.
     written: bool,
     /// `true` if the next element is inside a skipped element.
     skipping: bool,
-    /// Number of the element before the next one in the same string; `None` if the next element is the first.
+    /// Number of the element before the next element in the same string; `None` if the next element is the first.
     before: Option<u32>,
     /// `true` if every search for the next atom ends within one turn.
     pub(super) one_turn: bool,
@@ -201,8 +202,8 @@ impl<'l> AnalysisWalk<'l> {
         ScopedCondition { condition, bracket, when }
     }
 
-    /// Adds the timers of a scope's interrupt to the timers of enclosing scopes when the scope is opened, and removes
-    /// them when it is closed.
+    /// When a scope is opened, adds the timers of its interrupt to the timers of enclosing scopes; when it is closed,
+    /// removes them.
     fn wait_for(&mut self, element: Element<'l>, opened: bool) {
         for operand in element.condition().operands() {
             let Condition::Wait { quark, .. } = operand else { continue };
@@ -215,10 +216,10 @@ impl<'l> AnalysisWalk<'l> {
         }
     }
 
-    /// Returns conditions of which at least one has fired when an element has ended; an empty list if that is not
+    /// Returns conditions of which at least one has fired when an element has ended; empty if no such conditions are
     /// known.
     fn exit(&self, element: Element<'l>) -> RecentlyFired<'l> {
-        /// Maximum number of nested last elements that are examined, because they may end together with the element.
+        /// Maximum number of nested last elements that are examined because they may end together with the element.
         const ENDING: usize = 8;
         let mut exits = Vec::new();
         for here in iter::successors(Some(element), |here| here.children().last()).take(ENDING) {
@@ -235,7 +236,7 @@ impl<'l> AnalysisWalk<'l> {
         Vec::new()
     }
 
-    /// Leaves the innermost element; the next element can be entered at the earliest end of this element.
+    /// Leaves the innermost element. The next element can be entered at the earliest when this element ends.
     fn leave(&mut self, element: Element<'l>) {
         let Some(open) = self.open.pop() else { return };
         let inside = self.clock.filter(|_| element.atom().is_none());
@@ -271,8 +272,8 @@ impl<'l> AnalysisWalk<'l> {
     }
 }
 
-/// Returns the earliest end of a loop, from its entry and the earliest end of its first pass; `None` if the loop is
-/// never entered or never ends.
+/// Returns the earliest end of a loop, given the time of its entry and the earliest end of its first pass; `None` if
+/// the loop is never entered or never ends.
 fn passes(from: Option<u64>, pass: Option<u64>, times: Option<u64>) -> Option<u64> {
     let (from, pass, times) = (from?, pass?, times?);
     Some(from.saturating_add(pass.saturating_sub(from).saturating_mul(times)))

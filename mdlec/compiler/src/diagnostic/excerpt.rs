@@ -1,4 +1,5 @@
-//! Extracts the lines that a message shows from their files; long lines are cut around the message's places.
+//! Extracts the lines that a message shows from their files. Long lines are cut to the text around the message's
+//! places.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -37,7 +38,7 @@ struct ExcerptLines {
 /// A line of a file, or the shown parts of it.
 #[derive(Debug)]
 struct ExcerptLine {
-    /// Number of the line in its file, from 0.
+    /// Number of the line in its file, counted from 0.
     index: usize,
     /// Byte range of the line in the excerpt.
     range: Range<usize>,
@@ -63,7 +64,8 @@ impl Sources {
         term::emit_to_write_style(out, &term::Config::default(), &excerpt, &excerpt.report)
     }
 
-    /// Writes diagnostics to a terminal, up to the maximum number, and then the number of the remaining diagnostics.
+    /// Writes diagnostics to a terminal, up to the maximum number. If there are more, writes the number of the
+    /// remaining ones.
     ///
     /// # Errors
     /// Fails if writing a diagnostic fails; the other diagnostics are written nevertheless.
@@ -119,7 +121,7 @@ impl Sources {
 }
 
 impl<'s> Excerpt<'s> {
-    /// Extracts the lines that `diagnostic` shows from their files.
+    /// Extracts the lines that `diagnostic` shows from the files in `sources`.
     fn new(sources: &'s Sources, diagnostic: &Diagnostic) -> Result<Self, FilesError> {
         Self::of(sources, sources.report(diagnostic))
     }
@@ -199,7 +201,7 @@ impl ExcerptLines {
     }
 }
 
-/// Returns the byte ranges of a line that are shown, in order and disjoint.
+/// Returns the byte ranges of a line that are shown. They are in order, and do not overlap.
 fn stretches(line: &str, places: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
     if line.len() <= WHOLE {
         return std::iter::once(0..line.len()).collect();

@@ -1,4 +1,5 @@
-//! Provides the texts of `mdlec explain`: for each code, a paragraph and two examples, which a test compiles.
+//! Provides the texts of `mdlec explain`. For each code, there is a paragraph and two examples; a test compiles the
+//! examples.
 
 /// Explanation of a code: paragraphs, then a line that begins with `Wrong` and one with `Right`, each followed by an
 /// example indented by four spaces. Such a line may contain, in backticks, the command that the example is for; the
@@ -6,12 +7,12 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Explanation(pub(super) &'static str);
 
-/// An example of an explanation.
+/// An example in the explanation of a diagnostic code.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Example {
-    /// Arguments of `mdlec` that cause the message for the example.
+    /// Arguments with which `mdlec` reports the example's mistake.
     pub arguments: Vec<String>,
-    /// Text of the example's file.
+    /// Text of the file in the example.
     pub text: String,
 }
 

@@ -1,8 +1,8 @@
-//! Adds help to diagnostics: advice about a mistake, and the edit that corrects it.
+//! Adds help to diagnostics: advice about a mistake, and an edit that corrects it.
 
 use super::{Diagnostic, Span};
 
-/// An edit that replaces the text of a span; the span is empty where text is missing.
+/// An edit that replaces the text of a span. The span is empty if text has to be inserted.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Edit {
     /// Span of the text to replace.
@@ -16,7 +16,7 @@ pub struct Edit {
 pub struct Help {
     /// A sentence that quotes the text to type in backticks.
     pub text: String,
-    /// Edit that corrects the mistake, if the exact text is known.
+    /// Edit that corrects the mistake; `None` if the exact text is not known.
     pub edit: Option<Edit>,
 }
 
@@ -28,7 +28,8 @@ impl Diagnostic {
         self
     }
 
-    /// Adds help that proposes to replace the text of `span`. In `words`, `{}` stands for the replacement in backticks.
+    /// Adds help that proposes to replace the text of `span`. In `words`, `{}` is a placeholder for the replacement in
+    /// backticks.
     #[must_use]
     pub fn fix(mut self, words: &str, span: Span, replacement: impl Into<String>) -> Self {
         let replacement = replacement.into();

@@ -5,10 +5,10 @@ use serde::Serialize;
 
 use super::{Diagnostic, Label, Severity, Sources};
 
-/// A message. Without a code and without places, it is about the command and not about the plan.
+/// A message. If it has neither a code nor places, it concerns the command instead of the plan.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct JsonMessage<'a> {
-    /// Code of the message; `null` if it has none.
+    /// Code of the message; `null` if the message has no code.
     pub code: Option<&'static str>,
     /// `error`, `warning` or `note`.
     pub severity: &'static str,
@@ -20,10 +20,10 @@ pub struct JsonMessage<'a> {
     pub help: Vec<&'a str>,
 }
 
-/// A place in a file. Lines and columns count from 1, columns in characters; the end is after the last character.
+/// A place in a file. Lines and columns are counted from 1, columns in characters; the end is after the last character.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FileRange<'a> {
-    /// Name of the file.
+    /// Name of the file that contains the place.
     pub file: &'a str,
     /// Line of the start.
     pub line: usize,
@@ -40,7 +40,7 @@ pub struct FileRange<'a> {
 }
 
 impl<'a> JsonMessage<'a> {
-    /// Makes a message without a code. Lines of the text that begin with `help: ` become its help.
+    /// Creates a message without a code. Lines of `text` that begin with `help: ` become the help of the message.
     #[must_use]
     pub fn plain(severity: &'static str, text: &'a str) -> Self {
         let mut parts = text.split("\nhelp: ");

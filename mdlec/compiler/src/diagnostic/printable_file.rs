@@ -1,5 +1,5 @@
-//! Makes the text of a file printable, by replacing characters that are not printable by their numbers, and converts
-//! offsets between the original and the printable text.
+//! Replaces characters of a file that are not printable by their numbers, and converts offsets between the original
+//! text and the printable text.
 
 use codespan_reporting::files::SimpleFile;
 use mdle_runtime::{Printable, is_printable};
@@ -9,7 +9,8 @@ use mdle_runtime::{Printable, is_printable};
 pub(super) struct PrintableFile {
     /// File with the original name and the printable text.
     pub(super) file: SimpleFile<String, String>,
-    /// For each replaced character, the offset after it in the text and in the printable text.
+    /// For each replaced character, the offset after it in the original text, and the offset after its replacement in
+    /// the printable text.
     replaced: Vec<(usize, usize)>,
 }
 
@@ -37,13 +38,13 @@ impl PrintableFile {
         Some(Self { file: SimpleFile::new(name.to_owned(), shown), replaced })
     }
 
-    /// Returns the offset in the printable text for an offset in the text.
+    /// Converts an offset in the original text to an offset in the printable text.
     pub(super) fn place(&self, byte: usize) -> usize {
         let before = self.replaced.partition_point(|(text, _)| *text <= byte);
         before.checked_sub(1).map_or(byte, |last| self.replaced[last].1 + (byte - self.replaced[last].0))
     }
 
-    /// Returns the offset in the text for an offset in the printable text.
+    /// Converts an offset in the printable text to an offset in the original text.
     pub(super) fn origin(&self, place: usize) -> usize {
         let before = self.replaced.partition_point(|(_, shown)| *shown <= place);
         before.checked_sub(1).map_or(place, |last| self.replaced[last].0 + (place - self.replaced[last].1))

@@ -13,18 +13,18 @@ use super::{SourceId, Span};
 pub struct Sources {
     /// Files in ascending order of their offsets.
     files: Vec<(SourceId, SourceFile)>,
-    /// Place that was looked up last.
+    /// Place that was looked up last, with its line and column.
     last: Cell<Option<LineAndColumn>>,
 }
 
-/// A file as it is written, and as it is shown if that differs.
+/// A file as written and, if that differs, as shown.
 #[derive(Debug)]
 struct SourceFile {
     written: SimpleFile<String, String>,
     shown: Option<PrintableFile>,
 }
 
-/// A place with its line and column; both count from 1 here.
+/// A place with its line and column. Here, both are counted from 1.
 #[derive(Debug, Clone, Copy)]
 struct LineAndColumn {
     source: SourceId,
@@ -34,10 +34,11 @@ struct LineAndColumn {
 }
 
 impl Sources {
-    /// Maximum total size of all files in bytes, including one byte between two files; offsets have 32 bits.
+    /// Maximum total size of all files, in bytes, including one byte between each two files. The limit exists because
+    /// offsets have 32 bits.
     const ROOM: u32 = u32::MAX;
 
-    /// Adds a file, with its name in messages and its text. There must be [room](Self::refusal) for the file.
+    /// Adds a file; `name` is the name that messages show. There must be [room](Self::refusal) for the file.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
         let (id, name, text) = (self.next(), name.into(), text.into());
         let shown = PrintableFile::of(&name, &text);
@@ -45,8 +46,8 @@ impl Sources {
         id
     }
 
-    /// Returns the offset of the next file. One byte separates two files, so that the end of a file does not belong to
-    /// the next file.
+    /// Returns the offset of the next file that is added. One byte separates two files, so that the end of a file does
+    /// not belong to the next file.
     fn next(&self) -> SourceId {
         SourceId(self.files.last().map_or(0, |(last, file)| Span::new(*last, 0, file.written.source().len() + 1).end))
     }
@@ -79,7 +80,7 @@ impl Sources {
         (source, span.within(source))
     }
 
-    /// Returns the line and the column of a byte; both count from 1, and columns count characters.
+    /// Returns the line and the column of a byte; both are counted from 1, and columns count characters.
     ///
     /// If the byte is in the same line as the place that was looked up last, the search starts from that place, because
     /// a file may consist of one line with a mistake in every word.
@@ -92,7 +93,7 @@ impl Sources {
         known.map_or((1, 1), |known| (known.line, known.column))
     }
 
-    /// Returns the place of a byte that is in the same line as the place that was looked up last; `None` if it is in
+    /// Returns the place of a byte if it is in the same line as the place that was looked up last; `None` if it is in
     /// another line.
     fn place_near(&self, source: SourceId, byte: usize) -> Option<LineAndColumn> {
         let last = self.last.get().filter(|last| last.source == source)?;
@@ -103,8 +104,8 @@ impl Sources {
         Some(LineAndColumn { source, byte, line, column })
     }
 
-    /// Returns the name of the file that contains a span, and the number of the line in which the span begins, from 1;
-    /// 0 if the line is not known.
+    /// Returns the name of the file that contains a span, and the number of the line in which the span begins, counted
+    /// from 1; 0 if the line is not known.
     #[must_use]
     pub fn line(&self, span: Span) -> (&str, usize) {
         let (source, range) = self.range(span);
@@ -147,8 +148,8 @@ impl Sources {
         shown.map_or(byte, |shown| shown.place(byte))
     }
 
-    /// Returns the column, in the file as written, of a byte in the file as it is shown; in characters from 1. `line`
-    /// counts from 0.
+    /// Returns the column, in the file as written, for the byte offset `byte` in the file as shown. Columns count
+    /// characters from 1; `line` counts from 0.
     pub(super) fn column(&self, source: SourceId, line: usize, byte: usize) -> Result<usize, FilesError> {
         let (_, file) = self.file(source.0).ok_or(FilesError::FileMissing)?;
         let byte = file.shown.as_ref().map_or(byte, |shown| shown.origin(byte));

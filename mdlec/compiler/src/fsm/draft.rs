@@ -11,26 +11,26 @@ use crate::plan::{Interrupt, Mark, Quark, QuarkId, RecordId};
 /// The tables of a machine, and the meaning of its brackets and atoms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MachineDraft {
-    /// The scopes and loops, in pre-order.
+    /// Scopes and loops, in pre-order.
     pub brackets: Vec<Bracket>,
-    /// The atoms as written, from left to right.
+    /// Atoms in the order of the plan's text.
     pub atoms: Vec<Atom>,
     /// The number of the termination state.
     pub termination: u64,
-    /// The scope of each bracket; `None` for a loop.
+    /// Meaning of each bracket that is a scope; `None` for a loop.
     pub scopes: Vec<Option<ScopeMeaning>>,
-    /// The place of each bracket in the plan's text.
+    /// Span of each bracket in the plan's text.
     pub spans: Vec<Span>,
-    /// The law of each atom, with the angle of the atom's frame.
+    /// Law of each atom, and the angle of the atom's frame.
     pub laws: Vec<LawMeaning>,
     /// The frame of each atom; `None` for an atom that is not inside a `FRAME here`.
     pub frames: Vec<Option<Here>>,
     /// For each bracket, the labels of the elements that end with it; only brackets with such labels are
     /// listed.
     pub marks: BTreeMap<u32, Vec<Mark>>,
-    /// The place of each record that `after` reads; a record belongs to one use of a definition.
+    /// Position of each record that `after` reads. A record belongs to one use of a definition.
     pub records: BTreeMap<RecordId, RecordPlace>,
-    /// The quarks with their arguments, each once.
+    /// The quarks with their arguments; each quark is listed once.
     pub quarks: Vec<Quark>,
     /// Sizes of the state that a machine keeps between turns.
     pub sizes: Sizes,
@@ -53,21 +53,21 @@ impl MachineDraft {
 pub struct ScopeMeaning {
     /// Name of the scope; empty for an atom, and for a scope in formal notation.
     pub name: String,
-    /// Interrupt of the scope.
+    /// Interrupt that ends the scope.
     pub interrupt: Interrupt,
 }
 
-/// The meaning of an atom.
+/// Law and frame of an atom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LawMeaning {
     /// Law of the atom.
     pub quark: QuarkId,
-    /// Angle by which the atom's frame is turned, in radians; relative to the innermost enclosing `FRAME here`,
-    /// if there is one.
+    /// Angle, in radians, by which the atom's frame is turned. It is relative to the innermost enclosing `FRAME here`;
+    /// without one, it is relative to the plan's frame.
     pub frame: f64,
 }
 
-/// The place of a record among the memories of a level of scopes.
+/// Position of a record among the memories of a level of scopes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RecordPlace {
     /// Level of the outermost scope of the definition.
@@ -81,14 +81,14 @@ pub struct RecordPlace {
 /// Sizes of the state that a machine keeps between turns.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Sizes {
-    /// Maximum number of memories at a level of scopes: the memories of RISING in the scope's interrupt, and
-    /// after them the facts of the scope's record. All are empty when the scope is entered.
+    /// Maximum number of memories at a level of scopes. These are the memories of RISING in the scope's interrupt,
+    /// followed by the facts of the scope's record. All are cleared when the scope is entered.
     pub memories: usize,
     /// Number of levels of scopes, down to the deepest level with a `wait`, a `way` or a `FRAME here`. The machine does
     /// not record the entry of scopes at deeper levels.
     pub levels: usize,
-    /// `true` if the machine stores not only the time at which each scope was entered, but also the odometer and the
-    /// heading at that moment, and the progress of the law. A plan with `way`, `FRAME here`, `stuck` or `rendezvous`
+    /// `true` if the machine stores more than the time at which each scope was entered: the odometer reading and the
+    /// heading at that time, and the progress of the law. A plan with `way`, `FRAME here`, `stuck` or `rendezvous`
     /// needs them.
     pub stamps: bool,
     /// Maximum number of loops that enclose an atom.

@@ -1,6 +1,6 @@
 //! A view of each scope, loop and atom of a state machine.
 //!
-//! Only this file and [`validate`](super::validate) read the tables of a machine by number.
+//! Only this file and [`validate`](super::validate) access the tables of a machine by index.
 
 use std::fmt;
 use std::iter;
@@ -33,30 +33,31 @@ pub enum ElementKind<'m> {
     Atom(Atom<'m>),
 }
 
-/// Immediate consequence of the end of an element.
+/// Consequence of the end of an element, without further steps.
 #[derive(Debug, Clone, Copy)]
 pub enum Exit<'m> {
     /// The plan is over.
     Over,
-    /// The next element of the same string is entered.
+    /// The element is followed by another element in the same string, which is entered.
     Next(Element<'m>),
-    /// The string of the enclosing element has ended: a loop may begin its next pass.
+    /// The element was the last one in the string of its enclosing element, which is contained here. If that element is
+    /// a loop, it may begin its next pass.
     Last(Element<'m>),
 }
 
 impl<'m> Element<'m> {
-    /// Returns the element with this number in these tables.
+    /// Creates the element with this number in these tables.
     pub(super) fn new(tables: &'m MachineDraft, number: u32) -> Self {
         Self { tables, number }
     }
 
-    /// Returns the element's number among all elements in pre-order, from 0.
+    /// Returns the index of the element among all elements in pre-order.
     #[must_use]
     pub fn number(self) -> u32 {
         self.number
     }
 
-    /// Returns the element's number as an index into a list with an entry for each element.
+    /// Returns the index of the element as `usize`, for lists with an entry for each element.
     #[must_use]
     pub fn index(self) -> usize {
         self.number as usize
@@ -75,14 +76,14 @@ impl<'m> Element<'m> {
         }
     }
 
-    /// Returns the atom, if the element is an atom.
+    /// Returns the atom if the element is an atom; `None` otherwise.
     #[must_use]
     pub fn atom(self) -> Option<Atom<'m>> {
         let first = self.first();
         (self.tables.atoms[first.index()].scope == self.number).then_some(first)
     }
 
-    /// Returns `true` if the element is a scope, but neither a loop nor an atom.
+    /// Returns `true` if the element is a behavior or the plan, and not a loop or an atom.
     #[must_use]
     pub fn is_scope(self) -> bool {
         matches!(self.kind(), ElementKind::Scope)
@@ -103,7 +104,7 @@ impl<'m> Element<'m> {
         })
     }
 
-    /// Returns the element itself and all elements that enclose it, outwards to the plan.
+    /// Returns an iterator over the element itself and all elements that enclose it, from the innermost to the plan.
     pub fn outwards(self) -> impl Iterator<Item = Self> {
         iter::successors(Some(self), |element| element.parent())
     }
@@ -154,8 +155,8 @@ impl<'m> Element<'m> {
         }
     }
 
-    /// Returns the number of a loop's counter, and the number of states of one pass in the expanded plan (0 for
-    /// a loop without end); `None` for an element that is no loop.
+    /// Returns the index of a loop's counter, and the number of states of one pass in the expanded plan (0 for a loop
+    /// without end); `None` for an element that is not a loop.
     #[must_use]
     pub fn counter(self) -> Option<(u16, u64)> {
         match self.bracket().kind {
@@ -170,13 +171,13 @@ impl<'m> Element<'m> {
         self.atom().is_some_and(|atom| atom.law().completes)
     }
 
-    /// Returns the labels of the elements that end together with this one.
+    /// Returns the labels of the elements that end together with this element.
     #[must_use]
     pub fn marks(self) -> &'m [Mark] {
         self.tables.marks.get(&self.number).map_or(&[], Vec::as_slice)
     }
 
-    /// Returns the immediate consequence of the element's end.
+    /// Returns the consequence of the element's end, without further steps.
     #[must_use]
     pub fn exit(self) -> Exit<'m> {
         let Some(parent) = self.parent() else { return Exit::Over };
@@ -222,18 +223,18 @@ pub struct Atom<'m> {
 }
 
 impl<'m> Atom<'m> {
-    /// Returns the atom with this number in these tables.
+    /// Creates the atom with this number in these tables.
     pub(super) fn new(tables: &'m MachineDraft, number: u32) -> Self {
         Self { tables, number }
     }
 
-    /// Returns the atom's number among the atoms as written, from 0.
+    /// Returns the index of the atom in the order of the plan's text.
     #[must_use]
     pub fn number(self) -> u32 {
         self.number
     }
 
-    /// Returns the atom's number as an index into a list with an entry for each atom.
+    /// Returns the index of the atom as `usize`, for lists with an entry for each atom.
     #[must_use]
     pub fn index(self) -> usize {
         self.number as usize
@@ -245,7 +246,7 @@ impl<'m> Atom<'m> {
         Element::new(self.tables, self.tables.atoms[self.index()].scope)
     }
 
-    /// Returns the number of the atom's state, from 1, in the first pass of every loop.
+    /// Returns the number of the atom's state, counted from 1, in the first pass of all loops.
     #[must_use]
     pub fn state(self) -> u64 {
         self.tables.atoms[self.index()].state
@@ -263,15 +264,15 @@ impl<'m> Atom<'m> {
         self.tables.quark(self.law_id())
     }
 
-    /// Returns the angle by which the atom's frame is turned, in radians; relative to the innermost enclosing
-    /// `FRAME here`, if there is one.
+    /// Returns the angle, in radians, by which the atom's frame is turned. It is relative to the innermost enclosing
+    /// `FRAME here`; if there is none, it is relative to the plan's frame.
     #[must_use]
     pub fn frame(self) -> f64 {
         self.tables.laws[self.index()].frame
     }
 
-    /// Returns the angle by which the plan's own frame is turned for the atom, in radians; 0 inside a `FRAME
-    /// here`, which the run-time system applies.
+    /// Returns the angle, in radians, by which the atom's frame is turned relative to the plan's frame; 0 inside a
+    /// `FRAME here`, whose angle the run-time system adds.
     #[must_use]
     pub fn turned(self) -> f64 {
         if self.tables.frames[self.index()].is_some() { 0.0 } else { self.frame() }
@@ -284,7 +285,7 @@ impl fmt::Debug for Atom<'_> {
     }
 }
 
-/// Returns an index into the tables as a number.
+/// Converts an index into the tables to the type in which the tables store numbers.
 pub(super) fn as_number(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }

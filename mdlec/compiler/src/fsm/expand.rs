@@ -1,4 +1,4 @@
-//! Expands finite loops (paper, section II-A: `(s1 s2)^3 → s1 s2 s1 s2 s1 s2`), so that every state has a number.
+//! Expands finite loops (paper, section II-A: `(s1 s2)^3 → s1 s2 s1 s2 s1 s2`), so that every state gets a number.
 
 use super::{STATES, lower};
 use crate::diagnostic::{Code, Diagnostic, Span};
@@ -6,16 +6,16 @@ use crate::plan::{Loop, Node, Nondegenerate, PlanPart, Scope};
 
 /// Maximum number of states of an expanded plan.
 const EXPANDED: u64 = 100_000;
-/// Maximum number of condition parts of an expanded plan, unless the plan as written has more.
+/// Maximum number of parts of conditions in an expanded plan, unless the plan as written has more.
 const PARTS: u64 = 1 << 20;
-/// Maximum number of bytes of an expanded plan's conditions and names, unless the plan as written has more.
+/// Maximum number of bytes of conditions and names in an expanded plan, unless the plan as written has more.
 const TEXT: u64 = 1 << 26;
 
-/// Returns the plan with its finite loops written out; a loop without end is left as it is.
+/// Returns the plan with its finite loops written out; loops without end are unchanged.
 ///
 /// # Errors
-/// Fails with E0501 for a plan that cannot be lowered; E0502 for a plan with more than 100,000 states, or with too many
-/// conditions or too much text in these states.
+/// Fails with E0501 for a plan that cannot be converted to a state machine. Fails with E0502 for a plan with more than
+/// 100,000 states, or with too many conditions or too much text in these states.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
     expands(plan)?;
     Ok(plan.map(expand_scope))
@@ -48,10 +48,11 @@ pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     Ok(())
 }
 
-/// Returns the number of states of a plan with its finite loops written out, the termination state included.
+/// Returns the number of states, including the termination state, of a plan with its finite loops written out.
 ///
 /// # Errors
-/// Fails with E0501 for a plan that cannot be lowered, E0502 for a plan with more than 100,000 states.
+/// Fails with E0501 for a plan that cannot be converted to a state machine, and with E0502 for a plan with more than
+/// 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
     let count = ElementSum { unit: "states", of: |part| u64::from(part.atom().is_some()) };
     let expanded = Expanded::of(PlanPart::Scope(&plan.plan().root), &count, true);
@@ -104,14 +105,14 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
     expanded
 }
 
-/// A quantity that is added up over all elements, and the function that returns the amount of a single element.
+/// A quantity that is added up over all elements. Contains the function that returns the amount for a single element.
 struct ElementSum {
-    /// Name of the quantity, in the plural.
+    /// Name of the quantity in the plural.
     unit: &'static str,
     of: fn(PlanPart<'_>) -> u64,
 }
 
-/// Total of a quantity in a plan, and the loop that contributes most to it.
+/// Total of a quantity over a plan, and the loop that contributes most to the total.
 #[derive(Default)]
 struct Expanded {
     all: u64,
@@ -119,8 +120,8 @@ struct Expanded {
 }
 
 impl Expanded {
-    /// Counts the quantity in all passes of finite loops if `passes` is `true`, and otherwise in one pass of
-    /// each loop.
+    /// Adds up the quantity over all passes of finite loops if `passes` is `true`, and over one pass of each loop
+    /// otherwise.
     fn of(part: PlanPart<'_>, count: &ElementSum, passes: bool) -> Self {
         let inside = part.body().iter().map(|node| Self::of(node.part(), count, passes));
         let size = |repeated: &Option<(u64, Span)>| repeated.map_or(0, |(size, _)| size);

@@ -1,5 +1,5 @@
-//! Writes a machine as an FSM file (docs/src/reference/interfaces.md, 5), which contains the states, and the interrupts
-//! with their transitions; finite loops are expanded.
+//! Writes a machine as an FSM file (docs/src/reference/interfaces.md, 5). The file contains the states, and the
+//! interrupts with their transitions; finite loops are expanded.
 
 use serde::Serialize;
 
@@ -18,22 +18,22 @@ pub struct FsmFile {
     pub version: u32,
     /// Name of the plan.
     pub source: String,
-    /// Names of the states; the last is the termination state.
+    /// Names of the states; the last one is the termination state.
     pub states: Vec<String>,
     /// Name of the state in which the plan begins.
     pub start: String,
     /// Quark text of the law of each state except the termination state.
     pub laws: Vec<String>,
-    /// The interrupts, in pre-order of the expanded plan, then the completion of laws.
+    /// The interrupts in pre-order of the expanded plan, followed by the completion of laws.
     pub interrupts: Vec<InterruptEntry>,
     /// Names of the interrupts that never fire: null interrupts, and interrupts that were removed because an outer
     /// scope repeats them.
     pub never: Vec<String>,
-    /// The scopes in pre-order, with their names and their first and last states.
+    /// The scopes in pre-order, each with its name and its first and last state.
     pub scopes: Vec<ScopeEntry>,
 }
 
-/// An interrupt with its transition matrix, which is given as a list of transitions.
+/// An interrupt with its transition matrix in the form of a list of transitions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InterruptEntry {
     /// Name of the interrupt: `x1`, `x2`, …, or `completed`.
@@ -44,7 +44,8 @@ pub struct InterruptEntry {
     pub moves: Moves,
 }
 
-/// Transitions, as pairs of the state that is left and the state that is entered, ordered by the state that is left.
+/// Transitions, as pairs of the state that is left and the state that is entered. They are sorted by the state that is
+/// left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moves(pub Vec<(String, String)>);
 
@@ -67,7 +68,8 @@ pub struct ScopeEntry {
     pub last: String,
 }
 
-/// Returns the FSM file of a plan: for each interrupt, the columns of its transition matrix that the interrupt lists.
+/// Returns the FSM file of a plan. For each interrupt, it contains the columns of the transition matrix that the
+/// interrupt lists.
 ///
 /// # Errors
 /// Fails with E0501 or E0502 as [`expand`](super::expand) does.

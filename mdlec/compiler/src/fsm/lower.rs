@@ -1,4 +1,4 @@
-//! Lowers a plan to its state machine (paper, Algorithm 1; docs/src/reference/semantics.md, 8.1), with loops as
+//! Lowers a plan to its state machine (paper, Algorithm 1; docs/src/reference/semantics.md, 8.1). Loops become
 //! counters.
 
 use std::collections::BTreeMap;
@@ -11,14 +11,14 @@ use super::{Machine, observation1, validate};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{self, Mark, Node, Nondegenerate, Record, Scope};
 
-/// Maximum number of states of a plan. Numbers up to this one are exact in JSON as well.
+/// Maximum number of states of a plan. Numbers up to this limit are exact in JSON.
 pub const STATES: u64 = 1 << 53;
 
-/// Lowers a plan, and validates the machine against it.
+/// Lowers a plan, and validates the resulting machine against the plan.
 ///
 /// # Errors
 /// Fails with E0501 if the expanded plan has more than [`STATES`] states; E0901 if the machine does not agree with the
-/// plan, which would be a bug in this compiler.
+/// plan, which indicates a bug in this compiler.
 pub fn lower(nondegenerate: &Nondegenerate) -> Result<Machine, Diagnostic> {
     let plan = nondegenerate.plan();
     let mut lowering = Lowering {
@@ -48,8 +48,8 @@ struct Lowering {
     draft: MachineDraft,
 }
 
-/// Place of a node: the enclosing bracket, the numbers of enclosing scopes and loops, and the node's first
-/// state.
+/// Position of a node in the plan: the enclosing bracket, the numbers of enclosing scopes and loops, and the node's
+/// first state.
 #[derive(Clone, Copy)]
 struct NodePlace {
     parent: u32,
@@ -105,8 +105,9 @@ impl Lowering {
         1
     }
 
-    /// Returns the level of the innermost scope with `FRAME here` that contains the elements of the scope at `place`;
-    /// `None` if there is none. `is_here` is `true` if the scope at `place` itself has `FRAME here`.
+    /// Returns the level of the innermost scope with `FRAME here` that contains the elements of the scope at `place`,
+    /// which may be this scope itself; `None` if there is no such scope. `is_here` is `true` if the scope at `place`
+    /// has `FRAME here`.
     fn here(&mut self, is_here: bool, place: NodePlace) -> Option<u16> {
         if !is_here {
             return place.here;
@@ -138,7 +139,8 @@ impl Lowering {
         pass.checked_mul(times).filter(|states| *states < STATES).ok_or_else(|| too_many(repeated.span))
     }
 
-    /// Opens a bracket that begins with the next atom, and returns its number; [`Lowering::close`] sets the last atom.
+    /// Opens a bracket that begins with the next atom; returns the number of the bracket. [`Lowering::close`] sets the
+    /// last atom.
     fn bracket(&mut self, kind: Kind, parent: u32, meaning: Option<ScopeMeaning>, marks: &[Mark], span: Span) -> u32 {
         self.memories(meaning.as_ref().map_or(0, |meaning| meaning.interrupt.memories));
         if let (Kind::Scope { level }, Some(meaning)) = (kind, &meaning)

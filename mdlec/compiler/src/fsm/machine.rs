@@ -13,18 +13,18 @@ use crate::plan::{Quark, QuarkId, RecordId};
 pub struct Machine(MachineDraft);
 
 impl Machine {
-    /// Returns the machine with these validated tables.
+    /// Creates the machine with these validated tables.
     pub(super) fn new(draft: MachineDraft) -> Self {
         Self(draft)
     }
 
-    /// Returns a machine with tables that were not validated, for tests with tables that no plan produces.
+    /// Creates a machine with tables that have not been validated, for tests with tables that no plan produces.
     #[cfg(test)]
     pub(crate) fn unvalidated(draft: MachineDraft) -> Self {
         Self(draft)
     }
 
-    /// Returns a copy of the tables, for tests that corrupt them.
+    /// Returns a copy of the tables, which tests can corrupt.
     #[must_use]
     pub fn draft(&self) -> MachineDraft {
         self.0.clone()
@@ -36,18 +36,18 @@ impl Machine {
         self.0.tables()
     }
 
-    /// Returns the element of the plan itself.
+    /// Returns the element that is the plan itself.
     #[must_use]
     pub fn root(&self) -> Element<'_> {
         self.element(0)
     }
 
-    /// Returns all scopes, loops and atoms in pre-order: an element comes before its nested elements.
+    /// Returns all scopes, loops and atoms in pre-order: each element comes before its nested elements.
     pub fn elements(&self) -> impl DoubleEndedIterator<Item = Element<'_>> + ExactSizeIterator {
         (0..self.0.brackets.len()).map(|index| self.element(as_number(index)))
     }
 
-    /// Returns two visits of each element, at its entry and at its end; the visits of nested elements come
+    /// Returns two visits of each element, one at its entry and one at its end; the visits of nested elements come
     /// between them.
     pub fn walk(&self) -> impl Iterator<Item = Visit<'_>> {
         iter::successors(Some(Visit::Enter(self.root())), |visit| match *visit {
@@ -60,18 +60,18 @@ impl Machine {
         })
     }
 
-    /// Returns the atoms as written, from left to right.
+    /// Returns the atoms in the order of the plan's text.
     pub fn atoms(&self) -> impl DoubleEndedIterator<Item = Atom<'_>> + ExactSizeIterator {
         (0..self.0.atoms.len()).map(|index| self.atom(as_number(index)))
     }
 
-    /// Returns the element of this machine with this number.
+    /// Returns the element with this number.
     #[must_use]
     pub fn element(&self, number: u32) -> Element<'_> {
         Element::new(&self.0, number)
     }
 
-    /// Returns the atom of this machine with this number.
+    /// Returns the atom with this number.
     #[must_use]
     pub fn atom(&self, number: u32) -> Atom<'_> {
         Atom::new(&self.0, number)
@@ -89,7 +89,7 @@ impl Machine {
         self.elements().filter_map(Element::level).max().map_or(0, |level| usize::from(level) + 1)
     }
 
-    /// Returns the quarks with their arguments, each once.
+    /// Returns the quarks with their arguments; each quark is listed once.
     #[must_use]
     pub fn quarks(&self) -> &[Quark] {
         &self.0.quarks
@@ -107,7 +107,7 @@ impl Machine {
         &self.0.frames
     }
 
-    /// Returns the place of a record; `None` if `after` does not read this record.
+    /// Returns the position of a record; `None` if `after` does not read this record.
     #[must_use]
     pub fn record(&self, id: RecordId) -> Option<RecordPlace> {
         self.0.records.get(&id).copied()

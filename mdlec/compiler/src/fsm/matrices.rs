@@ -1,8 +1,8 @@
 //! Computes the transition matrices of a plan whose finite loops are written out (paper, Eqs. 2 to 4;
 //! docs/src/reference/semantics.md, 8.3).
 //!
-//! Every column of a matrix is a standard basis vector (Observation 1). Interrupts are in pre-order: of the interrupts
-//! that list a column, the outermost has the lowest number.
+//! Every column of a matrix is a standard basis vector (Observation 1). Interrupts are in pre-order: among the
+//! interrupts that list the same column, the outermost has the lowest number.
 
 use std::ops::{Mul, RangeInclusive};
 
@@ -13,17 +13,17 @@ use crate::plan::{Atom, Interrupt, Mark, Node, Nondegenerate, Plan, QuarkId, Rec
 /// The transition matrices of a plan with `N` states.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matrices<'p> {
-    /// The law of each state except the last, which is the termination state.
+    /// Law of each state except the last state, which is the termination state.
     pub laws: Vec<QuarkId>,
-    /// Angle, in radians, by which the frame of each of these laws is turned.
+    /// Angle, in radians, by which the frame of each law is turned.
     pub frames: Vec<f64>,
-    /// The interrupts in pre-order, including the interrupts of atoms.
+    /// Interrupts in pre-order, including the interrupts of atoms.
     pub transitions: Vec<Transition<'p>>,
 }
 
 impl<'p> Matrices<'p> {
-    /// Returns, for each atom whose law may complete, in order, the number of the atom's own interrupt in
-    /// [`transitions`](Self::transitions), and the matrix of the transition when the law completes.
+    /// Returns, in order, an entry for each atom whose law may complete: the index of the atom's own interrupt in
+    /// [`transitions`](Self::transitions), and the matrix of the transition that the completion causes.
     pub fn completion(&self, plan: &Plan) -> impl Iterator<Item = (usize, Matrix)> {
         let mut own = vec![None; self.laws.len()];
         // The interrupts of enclosing scopes come first, so the atom's own interrupt is the last that lists its column.
@@ -37,10 +37,10 @@ impl<'p> Matrices<'p> {
     }
 }
 
-/// An interrupt with its transition matrix.
+/// An interrupt and its transition matrix.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Transition<'p> {
-    /// Interrupt of the transition.
+    /// Interrupt that causes the transition.
     pub interrupt: &'p Interrupt,
     /// Name of the interrupt's scope; empty for an atom.
     pub name: &'p str,
@@ -50,20 +50,20 @@ pub struct Transition<'p> {
     pub here: bool,
     /// Transition matrix of the interrupt.
     pub matrix: Matrix,
-    /// Index of the first interrupt, in pre-order, whose scope restarts when this interrupt has fired. The scopes of
-    /// all later interrupts that list the new state restart too. Matrices do not express restarts, so these are
-    /// computed from the plan.
+    /// Index, in pre-order, of the first interrupt whose scope restarts when this interrupt has fired. The scopes of
+    /// later interrupts that list the new state restart too. This index is computed from the plan, because matrices do
+    /// not express restarts.
     pub afresh: usize,
     /// Record that is kept with the interrupt's scope; `None` if the scope has no record.
     pub record: Option<Record>,
     /// Labels of the interrupt's scope.
     pub marks: &'p [Mark],
-    /// Labels of the elements that end because the interrupt's scope was their last element.
+    /// Labels of the elements whose last element was the interrupt's scope, and which therefore end with it.
     pub ends_with: Vec<&'p Mark>,
 }
 
-/// A transition matrix, `N` by `N`: the identity, except for some neighboring columns that have their 1 in the
-/// same row. Columns and rows count from 0.
+/// A transition matrix of size `N` by `N`. It equals the identity matrix, except for some neighboring columns that have
+/// their 1 in the same row. Columns and rows are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Matrix {
     first: usize,
@@ -71,20 +71,20 @@ pub struct Matrix {
     row: usize,
 }
 
-/// A standard basis vector: the state of the machine.
+/// A standard basis vector, which represents the state of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct UnitVector {
-    /// Row of the vector's 1, from 0.
+    /// Row of the 1 in the vector, counted from 0.
     pub row: usize,
 }
 
 impl Matrix {
-    /// Returns the columns that the interrupt lists, which are the columns of the states in its scope.
+    /// Returns the columns that the interrupt lists: the columns of the states in its scope.
     pub fn columns(&self) -> RangeInclusive<usize> {
         self.first..=self.last
     }
 
-    /// Returns the row in which the listed columns have their 1.
+    /// Returns the row that contains the 1 of the listed columns.
     #[must_use]
     pub fn row(&self) -> usize {
         self.row
@@ -121,7 +121,7 @@ struct Brackets<'p> {
     all: Vec<MatrixBracket<'p>>,
     laws: Vec<QuarkId>,
     frames: Vec<f64>,
-    /// Number of interrupts so far.
+    /// Number of interrupts that have been added so far.
     interrupts: usize,
 }
 
@@ -131,13 +131,13 @@ struct MatrixBracket<'p> {
     around: Option<usize>,
     /// Labels of the elements that end together with the bracket.
     marks: &'p [Mark],
-    /// First state of the bracket, from 0.
+    /// First state of the bracket, counted from 0.
     first: usize,
-    /// Last state of the bracket, from 0.
+    /// Last state of the bracket, counted from 0.
     last: usize,
-    /// Number of the bracket's first interrupt.
+    /// Index of the bracket's first interrupt.
     begins: usize,
-    /// Number of the first interrupt after the bracket's last interrupt.
+    /// Index of the first interrupt after the bracket's last interrupt.
     ends: usize,
 }
 
@@ -150,22 +150,22 @@ enum BracketKind<'p> {
         here: bool,
         record: Option<Record>,
     },
-    /// A finite loop, whose passes are written out one after the other.
+    /// A finite loop, all passes of which are written out one after the other.
     WrittenOut,
     WithoutEnd,
 }
 
-/// Place of a bracket: the enclosing bracket, and the number of enclosing scopes.
+/// Position of a bracket: the enclosing bracket, and the number of enclosing scopes.
 #[derive(Clone, Copy)]
 struct BracketPlace {
     around: Option<usize>,
     level: usize,
 }
 
-/// Destination of an interrupt.
+/// State to which an interrupt leads, and the consequences of entering it.
 struct MatrixDestination<'p> {
     row: usize,
-    /// Number of the first interrupt whose scope restarts at the destination.
+    /// Index of the first interrupt whose scope restarts at the destination.
     afresh: usize,
     /// Labels of the elements that end because their last element has ended.
     ends_with: Vec<&'p Mark>,
@@ -218,9 +218,9 @@ impl<'p> Brackets<'p> {
         (bracket.last, bracket.ends) = (self.laws.len() - 1, self.interrupts);
     }
 
-    /// Returns the destination of a scope's interrupt: the start of the innermost enclosing loop without end
-    /// whose last state is also the scope's last state; without such a loop, the state after the scope's last
-    /// state.
+    /// Returns the destination of a scope's interrupt. If an enclosing loop without end has the same last state as the
+    /// scope, the destination is the start of the innermost such loop; otherwise, it is the state after the scope's
+    /// last state.
     fn destination(&self, scope: &MatrixBracket<'_>) -> MatrixDestination<'p> {
         let (mut outermost, mut ends_with) = (scope, Vec::new());
         while let Some(around) = outermost.around {
@@ -245,7 +245,7 @@ mod tests {
     use super::*;
     use crate::samples::compiled;
 
-    /// Returns the matrix of `size` states as a dense matrix, zeros included.
+    /// Returns the matrix, for `size` states, as a dense matrix that includes zeros.
     fn with_zeros(matrix: &Matrix, size: usize) -> DMatrix<u8> {
         let one = |row, column| u8::from((matrix * UnitVector { row: column }).row == row);
         DMatrix::from_fn(size, size, one)

@@ -1,5 +1,6 @@
-//! State machine of a plan: lowering, validation, matrices, files. Only [`lower`] constructs a [`Machine`]; all
-//! other code reads it by its elements.
+//! The state machine of a plan. Contains the conversion of plans to machines (lowering), the validation of machines,
+//! their matrices, and their files. Only [`lower`] constructs a [`Machine`]; all other code accesses a machine by its
+//! elements.
 
 mod draft;
 mod element;

@@ -1,10 +1,10 @@
 //! Checks Observation 1 of the paper on a machine: every column of its transition matrices is a standard basis vector.
 //!
 //! The matrix of a single scope has such columns by construction: the columns of its atoms have their 1 in the same
-//! row. If an interrupt of several scopes is counted once, its matrix is a sum over these scopes (Eq. 3), and a column
-//! that two of the scopes list would have two ones and a minus one. The intervals of scopes are nested or disjoint, so
-//! this happens only if a scope has the same interrupt as an enclosing scope. The check is therefore that the plan of
-//! the machine is non-degenerate.
+//! row. If an interrupt that belongs to several scopes is counted once, its matrix is a sum over these scopes (Eq. 3),
+//! and a column that two of these scopes list would have two ones and a minus one. The intervals of scopes are nested
+//! or disjoint, so this happens only if a scope has the same interrupt as an enclosing scope. Therefore, the function
+//! checks that the plan of the machine is non-degenerate.
 
 use std::collections::BTreeMap;
 
@@ -12,11 +12,12 @@ use super::{Machine, Visit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Function, Functions};
 
-/// Checks that all columns of a machine's transition matrices are standard basis vectors, also in matrices that count
-/// an interrupt once. The brackets must be in pre-order and nested, which [`validate`](super::validate) checks.
+/// Checks that all columns of a machine's transition matrices are standard basis vectors, even if an interrupt that
+/// belongs to several scopes is counted once. The brackets must be in pre-order and nested, which
+/// [`validate`](super::validate) checks.
 ///
 /// # Errors
-/// Fails with E0901 for the first interrupt that is repeated inside its scope, which is a bug in the compiler.
+/// Fails with E0901 for the first interrupt that is repeated inside its scope. This indicates a bug in the compiler.
 pub fn observation1(machine: &Machine) -> Result<(), Diagnostic> {
     let functions = Functions::new(machine.quarks());
     let mut open: BTreeMap<Function, &str> = BTreeMap::new();

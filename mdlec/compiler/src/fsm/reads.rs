@@ -1,4 +1,4 @@
-//! Finds the attributes of modules that a plan reads (docs/src/reference/semantics.md, 2.5).
+//! Finds the module attributes that a plan reads (docs/src/reference/semantics.md, 2.5).
 
 use std::collections::BTreeSet;
 
@@ -6,18 +6,18 @@ use super::Machine;
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind, ParameterKind};
 use crate::plan::{Quark, Value};
 
-/// An attribute of a module that a plan reads.
+/// An attribute that a plan reads from a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct AttributeRead<'m> {
-    /// Name of the module, as in the plan.
+    /// Name of the module, as the plan gives it.
     pub module: &'m str,
-    /// Name of the attribute, as in the alphabet.
+    /// Name of the attribute, as the alphabet gives it.
     pub attribute: &'m str,
-    /// SI unit of the attribute's values; `None` if the alphabet has no signal of a module with this name.
+    /// SI unit of the attribute's values; `None` if the alphabet declares no module signal with the attribute's name.
     pub unit: Option<&'static str>,
 }
 
-/// Returns the attributes of modules that the quarks of a machine read, each once.
+/// Returns the module attributes that the quarks of a machine read; each attribute is listed once.
 #[must_use]
 pub fn module_reads<'m>(machine: &'m Machine, alphabet: &'m Alphabet) -> BTreeSet<AttributeRead<'m>> {
     machine.quarks().iter().flat_map(|quark| reads_of(quark, alphabet)).collect()
@@ -45,8 +45,8 @@ fn reads_of<'m>(quark: &'m Quark, alphabet: &'m Alphabet) -> Vec<AttributeRead<'
     reads.collect()
 }
 
-/// Returns the SI unit of an attribute, which is the unit of the signal of a module with the attribute's name; `None`
-/// if there is no such signal.
+/// Returns the SI unit of an attribute, which is the unit of the module signal with the attribute's name; `None` if
+/// there is no such signal.
 fn unit(attribute: &str, alphabet: &Alphabet) -> Option<&'static str> {
     let is_read = |declaration: &&Declaration| {
         let own = |param: &crate::alphabet::Param| param.kind == ParameterKind::Module && param.with.is_empty();

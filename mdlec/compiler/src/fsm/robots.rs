@@ -1,4 +1,4 @@
-//! Finds the other robots whose states a plan reads through the state link (docs/src/reference/semantics.md, 2.6).
+//! Finds the other robots whose states a plan reads over the state link (docs/src/reference/semantics.md, 2.6).
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use super::Machine;
 use crate::alphabet::ParameterKind;
 use crate::plan::{Quark, Value};
 
-/// A `rendezvous` in the interrupt of an element.
+/// A `rendezvous` that occurs in the interrupt of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Rendezvous<'m> {
     /// Number of the element.
@@ -15,14 +15,14 @@ pub struct Rendezvous<'m> {
     pub robot: &'m str,
 }
 
-/// Returns the names of the robots that the quarks of a machine name, each once.
+/// Returns the names of other robots that occur in the quarks of a machine; each name is listed once.
 #[must_use]
 pub fn other_robots(machine: &Machine) -> BTreeSet<&str> {
     machine.quarks().iter().flat_map(robots_of).collect()
 }
 
-/// Returns the `rendezvous` of each element of a machine; several with the same robot in one interrupt count
-/// once.
+/// Returns the `rendezvous` in the interrupt of each element of a machine. If an interrupt contains several with the
+/// same robot, only one is returned.
 #[must_use]
 pub fn meetings(machine: &Machine) -> BTreeSet<Rendezvous<'_>> {
     let mut meetings = BTreeSet::new();

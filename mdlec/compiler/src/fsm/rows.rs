@@ -1,4 +1,4 @@
-//! A machine as table rows that contain ids of quarks: `rust` prints the rows, and `load` replaces the ids by quarks.
+//! A machine as table rows that contain ids of quarks. `rust` prints the rows; `load` replaces the ids with quarks.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -13,8 +13,8 @@ use crate::plan::{Condition, Quark, QuarkId, Value};
 pub struct Rows {
     /// Condition that ends each bracket, in the order of the brackets.
     pub guards: Vec<Guard<QuarkId>>,
-    /// The operands of conditions, breadth first: the operands of one condition are consecutive, and come after
-    /// the condition.
+    /// Operands of conditions, breadth first: the operands of one condition are consecutive, and come after the
+    /// condition.
     pub operands: Vec<Row<QuarkId>>,
     /// Law of each atom, in the order of the atoms.
     pub laws: Vec<LawRow<QuarkId>>,
@@ -40,7 +40,7 @@ pub fn rows(machine: &Machine) -> Rows {
     Rows { guards, operands: operands.rows(), laws: laws.collect(), marks, facts }
 }
 
-/// Returns the names of the path files that the laws of a machine replay, each once.
+/// Returns the names of the path files that the laws of a machine replay; each name is listed once.
 #[must_use]
 pub fn replayed_files<'m>(machine: &'m Machine, alphabet: &Alphabet) -> BTreeSet<&'m str> {
     let replays = |quark: &Quark| {
@@ -64,7 +64,7 @@ fn file(argument: &Value) -> Option<&str> {
     }
 }
 
-/// Returns the nearest enclosing element whose condition can fire; the element itself if there is none.
+/// Returns the nearest enclosing element whose condition can fire; the element itself if there is no such element.
 fn around(element: Element<'_>) -> Element<'_> {
     let can_fire = |enclosing: &Element<'_>| *enclosing.condition() != Condition::Null;
     element.outwards().skip(1).find(can_fire).unwrap_or(element)
@@ -95,16 +95,16 @@ fn marks(machine: &Machine) -> (Vec<MarkRow>, Vec<Fact>) {
     (marks, facts)
 }
 
-/// Operands of conditions that have a number, but no row yet.
+/// Operands of conditions that already have a number, but no row yet.
 struct Operands<'m> {
     machine: &'m Machine,
     waiting: VecDeque<&'m Condition>,
-    /// Number of operands that have a number.
+    /// Number of operands that have been numbered so far.
     count: u32,
 }
 
 impl<'m> Operands<'m> {
-    /// Returns the row of a condition, and gives its operands the next numbers.
+    /// Returns the row of a condition, and numbers its operands.
     fn row(&mut self, condition: &'m Condition) -> Row<QuarkId> {
         if let Some((quark, nanos)) = condition.lasting() {
             return Row::Lasting(quark, Nanos(nanos));
@@ -134,7 +134,7 @@ impl<'m> Operands<'m> {
         }
     }
 
-    /// Gives the next numbers to operands; returns the first of these numbers, and the number of operands.
+    /// Numbers operands consecutively; returns the first number, and the number of operands.
     fn numbered(&mut self, operands: impl IntoIterator<Item = &'m Condition>) -> (u32, u32) {
         let (first, waiting) = (self.count, self.waiting.len());
         self.waiting.extend(operands);

@@ -1,12 +1,10 @@
-//! Oracle of the lowering, which compares the tables of a machine with its plan and shares no code with the
-//! lowering.
+//! Test oracle of the lowering: compares the tables of a machine with its plan, and shares no code with the lowering.
 //!
-//! Every transition must be as the plan requires (paper, Eq. 2; docs/src/reference/semantics.md, 5.3 and 8).
-//! The oracle walks the plan and determines for each scope, loop and atom what follows when it ends, by the
-//! plan's own nesting; the machine has the same information in its intervals of atoms. If every step outwards
-//! agrees, every chain of steps agrees: the state to which a transition leads, the scopes and counters that it
-//! restarts, and the loop that it repeats. The cost therefore does not depend on loop counts, so every lowering
-//! can be validated.
+//! All transitions must agree with the plan (paper, Eq. 2; docs/src/reference/semantics.md, 5.3 and 8). The oracle
+//! walks over the plan. For each scope, loop and atom, it determines from the plan's nesting what follows when it ends;
+//! in the machine, intervals of atoms contain this information. If every single step outwards agrees, so does every
+//! chain of steps: the state to which a transition leads, the scopes and counters that it restarts, and the loop that
+//! it repeats. The cost does not depend on loop counts, so every lowering can be validated.
 
 use std::fmt;
 
@@ -20,7 +18,7 @@ use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 /// Checks that `draft` is the machine of `plan`.
 ///
 /// # Errors
-/// Fails with E0901 for the first difference between plan and machine, which is a bug in the compiler.
+/// Fails with E0901 for the first difference between plan and machine. A difference indicates a bug in the compiler.
 pub fn validate(plan: &Nondegenerate, draft: &MachineDraft) -> Result<(), Diagnostic> {
     let root = &plan.plan().root;
     let mut walk = NodeWalk { draft, brackets: 0, atoms: 0 };
@@ -35,28 +33,28 @@ pub fn validate(plan: &Nondegenerate, draft: &MachineDraft) -> Result<(), Diagno
 /// Position of a node in the plan.
 #[derive(Clone, Copy)]
 struct NodePosition {
-    /// Bracket of the enclosing node; for the plan, its own bracket.
+    /// Bracket of the enclosing node. For the plan, this is the plan's own bracket.
     holder: u32,
-    /// `true` if another node follows in the same string; `None` for the plan.
+    /// `true` if another node follows the node in its string; `None` for the plan.
     behind: Option<bool>,
     /// Number of scopes that enclose the node.
     scopes: u16,
     /// Number of loops that enclose the node.
     loops: u16,
-    /// Number of states of the expanded plan before the node, in the first pass of every loop.
+    /// Number of states of the expanded plan that come before the node, in the first pass of all loops.
     states: u128,
     /// Level of the innermost enclosing scope with `FRAME here`; `None` if there is no such scope.
     here: Option<u16>,
 }
 
-/// Immediate consequence of the end of a node.
+/// Consequence of the end of a node, without further steps.
 #[derive(Debug, PartialEq)]
 enum Consequence {
     /// The plan is over.
     Over,
     /// The atom `atom` becomes current, and everything inside the bracket `inside` restarts.
     Enters { atom: u32, inside: u32 },
-    /// The string of this enclosing bracket has ended: a loop may repeat it.
+    /// The string of this enclosing bracket has ended. If the bracket is a loop, it may begin its next pass.
     Ends { bracket: u32 },
 }
 
@@ -142,7 +140,8 @@ impl NodeWalk<'_> {
     }
 
     /// Returns the level of the innermost scope with `FRAME here` that contains the nodes of a scope; `None` if there
-    /// is none. If the scope itself has `FRAME here`, also checks that the machine can store the heading of this scope.
+    /// is no such scope. If the scope itself has `FRAME here`, also checks that the machine can store the heading of
+    /// this scope.
     fn here(&self, is_here: bool, around: NodePosition, span: Span) -> Result<Option<u16>, Diagnostic> {
         let Sizes { stamps, levels, .. } = self.draft.sizes;
         match is_here {
@@ -157,13 +156,13 @@ impl NodeWalk<'_> {
         }
     }
 
-    /// Counts the next bracket; returns its number, and the number of the first atom inside it.
+    /// Counts the next bracket. Returns the bracket's number, and the number of its first atom.
     fn met(&mut self) -> (u32, u32) {
         self.brackets += 1;
         (self.brackets - 1, self.atoms)
     }
 
-    /// Checks that a bracket has this kind and this first atom, and the successor that the plan requires.
+    /// Checks that a bracket has the given kind and first atom, and the successor that the plan requires.
     fn bracket(&self, number: u32, first: u32, kind: Kind, around: NodePosition, span: Span) -> Result<(), Diagnostic> {
         let in_machine = self.draft.brackets.get(number as usize);
         same(
@@ -203,7 +202,7 @@ impl NodeWalk<'_> {
         }
     }
 
-    /// Checks that a bracket has this name, interrupt and labels, and that the machine has enough memories.
+    /// Checks that a bracket has the given name, interrupt and labels, and that the machine has enough memories.
     fn meaning(
         &self,
         number: u32,
@@ -251,7 +250,7 @@ impl NodeWalk<'_> {
     }
 }
 
-/// Checks that a value, which `what` names, is the same in the plan and in the machine.
+/// Checks that a value is the same in the plan and in the machine; error messages call the value `what`.
 fn same<T: PartialEq + fmt::Debug>(span: Span, what: &str, in_plan: T, in_machine: T) -> Result<(), Diagnostic> {
     if in_plan == in_machine {
         Ok(())

@@ -1,4 +1,4 @@
-//! Texts of a plan as written, and the lines in which they begin, for reports.
+//! Collects, for reports, the texts of a plan as written and the lines in which they begin.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::syntax::one_line;
 pub struct PlanWords {
     /// Names of the files, in order of first appearance.
     pub files: Vec<String>,
-    /// The texts of each element, in the order of elements.
+    /// Texts of each element, in the order of the elements.
     pub elements: Vec<BracketText>,
     /// The operands of all brackets, in the order of the brackets.
     pub operands: Vec<OperandText>,
@@ -28,7 +28,7 @@ pub struct BracketText {
     pub at: SourceLine,
     /// Condition of the scope as written; empty if it has no operands that can fire.
     pub condition: String,
-    /// Position of the bracket's first operand among the operands of all brackets.
+    /// Index of the bracket's first operand among the operands of all brackets.
     pub first: u32,
     /// Number of the bracket's operands.
     pub count: u32,
@@ -39,11 +39,11 @@ pub struct BracketText {
 pub struct OperandText {
     /// Condition text of the operand, as traces show it.
     pub text: String,
-    /// The operand as written.
+    /// Text of the operand as written in the plan.
     pub written: String,
     /// Line in which the operand begins.
     pub at: SourceLine,
-    /// The places in the operand at which measured values are shown.
+    /// Positions in the operand at which measured values are shown.
     pub values: Vec<ValueWords<'static>>,
 }
 
@@ -80,7 +80,7 @@ struct Writing<'a> {
 }
 
 impl Writing<'_> {
-    /// Adds the texts of a bracket and of its operands.
+    /// Appends the texts of a bracket and of its operands.
     fn bracket(&mut self, element: Element<'_>) {
         let machine = self.machine;
         let at = self.line(element.interrupt().map(|_| element.span()));
@@ -149,7 +149,7 @@ impl Writing<'_> {
         self.alphabet.declarations_of(name).nth(*overload)?.unit.map(|(unit, _)| unit)
     }
 
-    /// Returns the line in which a span begins, and records the name of its file.
+    /// Returns the line in which a span begins, and records the name of the span's file.
     fn line(&mut self, span: Option<Span>) -> SourceLine {
         let Some(span) = span else { return SourceLine { file: 0, line: 0 } };
         let (name, line) = self.sources.line(span);

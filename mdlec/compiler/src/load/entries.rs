@@ -1,29 +1,29 @@
-//! Stores the moment at which each scope of a loaded plan was entered: the time and, if the plan needs them, the
-//! odometer and the heading.
+//! Stores the entry of each scope of a loaded plan: the time and, if the plan needs them, the odometer reading and the
+//! heading.
 
 use mdle_runtime::{Entries, Here, Nanometers, Nanos, Output, Radians, Stamp, Stamps};
 
 use crate::fsm::Machine;
 
-/// Storage for the entry of the current scope at each level.
+/// Storage for the entry of the scope at each level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entered {
     /// Time at which the scope of each level was entered.
     times: Box<[Nanos]>,
-    /// Odometer and heading at each entry, and the progress of the law; `None` if the plan needs only times.
+    /// Odometer reading and heading at each entry, and the progress of the law; `None` if the plan needs only times.
     stamps: Option<Box<LevelStamps>>,
 }
 
 type LevelStamps = Stamps<Box<[Stamp]>, Box<[Option<Here>]>>;
 
 impl Entered {
-    /// Returns the storage that a machine needs.
+    /// Returns the storage that the plan of a machine needs.
     pub(super) fn of(machine: &Machine) -> Self {
         let sizes = machine.sizes();
         Self::new(sizes.levels, sizes.stamps.then_some(machine))
     }
 
-    /// Returns storage for all data of all levels of a machine, including levels without timers, for an observed plan.
+    /// Returns storage for an observed plan. It stores all data of all levels, including levels without timers.
     pub(super) fn observed(machine: &Machine) -> Self {
         Self::new(machine.depth(), Some(machine))
     }
@@ -33,7 +33,7 @@ impl Entered {
         Self { times: vec![Nanos::ZERO; levels].into(), stamps: has_stamps.map(stamps).map(Box::new) }
     }
 
-    /// Returns `true` if odometer, heading and progress are stored.
+    /// Returns `true` if odometer readings, headings and progress are stored.
     pub(super) fn has_stamps(&self) -> bool {
         self.stamps.is_some()
     }

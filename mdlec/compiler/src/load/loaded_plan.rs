@@ -12,11 +12,11 @@ use crate::fsm::Machine;
 /// A loaded plan. It owns all its data, so one thread can load it and another thread can run it.
 pub struct LoadedPlan<A: Alphabet> {
     rows: LoadedRows<A>,
-    /// The observed moments; `None` if the plan is not observed.
+    /// The moments that were observed; `None` if the plan is not observed.
     looked_at: Option<Box<LookedAt<A>>>,
-    /// `true` if the plan is observed, or keeps odometry, progress or memories.
+    /// `true` if the plan is observed, or needs odometry, progress or memories.
     observes: bool,
-    /// `true` if the plan keeps odometry or progress.
+    /// `true` if the plan needs odometry or progress.
     has_stamps: bool,
 }
 
@@ -33,7 +33,7 @@ struct LookedAt<A: Alphabet> {
 }
 
 impl<A: Alphabet> Loaded<A> {
-    /// Returns the plan before it begins.
+    /// Creates a run of the plan, which has not begun yet.
     #[must_use]
     pub fn plan(self: &Arc<Self>) -> LoadedPlan<A> {
         LoadedPlan::new(self.rows(), self, self.machine())
@@ -41,7 +41,7 @@ impl<A: Alphabet> Loaded<A> {
 }
 
 impl<A: Alphabet> LoadedPlan<A> {
-    /// Returns the plan of these rows before it begins; the plan is observed if `machine` is given.
+    /// Creates the plan of these rows before it begins. If `machine` is given, the plan is observed.
     fn new(rows: LoadedRows<A>, loaded: &Arc<Loaded<A>>, machine: Option<Arc<Machine>>) -> Self {
         let looked_at = machine.map(|machine| {
             let loaded = Arc::clone(loaded);
@@ -52,7 +52,7 @@ impl<A: Alphabet> LoadedPlan<A> {
         Self { rows, looked_at, observes, has_stamps: loaded.has_stamps() }
     }
 
-    /// Returns the plan in unobserved form: the moments of its turns are no longer recorded.
+    /// Stops the observation of the plan, so that the moments of its turns are no longer recorded.
     #[must_use]
     pub fn unobserved(self) -> Self {
         Self { looked_at: None, ..self }
@@ -73,7 +73,7 @@ impl<A: Alphabet> LoadedPlan<A> {
 }
 
 impl<A: Alphabet> LookedAt<A> {
-    /// Records the moment before a transition, or at the end of a turn.
+    /// Records a moment: the state before a transition, or at the end of a turn.
     fn note(&mut self, rows: &LoadedRows<A>, cursor: &Position, cause: Option<Cause>, y: &A::Output, t: Nanos) {
         // A plan that resumes after a suspension may repeat a turn at the same time.
         let is_settled = self.moments.last().is_some_and(|last| last.cause.is_none());

@@ -1,4 +1,4 @@
-//! Loads a plan at run time, without rustc: the robot's bound alphabet creates the quarks of the table rows from their
+//! Loads a plan at run time, without rustc. The robot's bound alphabet creates the quarks in the table rows from their
 //! names.
 
 mod entries;
@@ -26,17 +26,18 @@ pub use table::{Loaded, SharedTables};
 /// Reason why a plan cannot be loaded.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LoadError {
-    /// The target with this name is bound to another alphabet than the one for which the plan was compiled.
+    /// The target with this name was built with an alphabet other than the one for which the plan was compiled.
     OtherAlphabet(String),
     /// The target does not implement the quark with this text, although its alphabet declares the quark.
     Unbound(String),
-    /// With this plan, the names of all plans that this process has loaded would exceed [`MOST_NAMES`] bytes.
+    /// With this plan, the total length of all names in plans that this process has loaded would exceed [`MOST_NAMES`]
+    /// bytes.
     TooManyNames,
-    /// The new names in the plan have more bytes than are left in its [`NameBudget`].
+    /// The plan's new names need more bytes than its [`NameBudget`] has left.
     OverBudget,
-    /// The plan reads this number of attributes of modules, which is more than [`PUBLISHED`].
+    /// The plan reads more than [`PUBLISHED`] module attributes; contains their number.
     TooManyReads(usize),
-    /// The plan names this number of other robots, which is more than [`PEERS`].
+    /// The plan names more than [`PEERS`] other robots; contains their number.
     TooManyRobots(usize),
 }
 
@@ -69,8 +70,8 @@ impl Error for LoadError {}
 /// the plan was compiled.
 ///
 /// # Errors
-/// Fails if the robot's crate is bound to another alphabet or lacks a quark, or if the plans of this process
-/// have too many names, the plan reads too many attributes or names too many robots.
+/// Fails if the robot's crate is bound to another alphabet or lacks a quark, or if the plans of this process have too
+/// many names, or if the plan reads too many attributes or names too many robots.
 pub fn load<A: mdle_runtime::Alphabet>(
     machine: &Machine,
     sources: &Sources,

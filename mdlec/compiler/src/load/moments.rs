@@ -1,5 +1,5 @@
-//! Records the moments of a turn, which are the states of the enclosing scopes of the current atom before each
-//! transition and at the end of the turn.
+//! Records the moments of a turn. A moment contains the states of the scopes that enclose the current atom, either
+//! before a transition or at the end of the turn.
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{Alphabet, Cause, Cursor, Examined, Nanometers, Nanos, Plan as _};
@@ -7,13 +7,13 @@ use mdle_runtime::{Alphabet, Cause, Cursor, Examined, Nanometers, Nanos, Plan as
 use super::Entered;
 use super::table::LoadedRows;
 
-/// Position in a plan that was loaded.
+/// Position in a loaded plan.
 pub(super) type Position = Cursor<Entered, Box<[u64]>>;
 
-/// State of the plan before a transition, or at the end of a turn.
+/// State of a plan before a transition, or at the end of a turn.
 #[derive(Debug, Clone)]
 pub struct PlanMoment {
-    /// Number of the current atom, as written, from 0.
+    /// Index of the current atom in the order of the plan's text.
     pub atom: u32,
     /// Cause of the transition; `None` at the end of a turn.
     pub cause: Option<Cause>,
@@ -21,7 +21,7 @@ pub struct PlanMoment {
     pub is_completed: bool,
     /// Time for which the law of the previous turn has made no progress; `None` if that law has no goal.
     pub stalled: Option<Nanos>,
-    /// The scopes that enclose the atom, the plan first and the atom's own last.
+    /// Scopes that enclose the atom, from the plan to the atom's own scope.
     pub scopes: Vec<ScopeMoment>,
 }
 
@@ -44,13 +44,13 @@ pub struct ScopeMoment {
     pub since: Nanos,
     /// Length of the path driven since the scope was entered.
     pub way: Nanometers,
-    /// The condition of the scope and all parts of the condition, each part before its operands.
+    /// Values of the scope's condition and of all its parts; each part comes before its operands.
     pub parts: Vec<Examined>,
-    /// Number of the atom that would follow if the scope ended now; `None` if the plan would then be over.
+    /// Index of the atom that would follow if the scope ended now; `None` if the plan would then be over.
     pub leads_to: Option<u32>,
 }
 
-/// Returns the moment of the current atom before a transition with this cause, or at the end of a turn.
+/// Returns the moment of the current atom, either before a transition with this cause or at the end of a turn.
 pub(super) fn moment<A: Alphabet>(
     rows: &LoadedRows<A>,
     cursor: &Position,

@@ -1,4 +1,4 @@
-//! Stores the names in loaded plans until the process ends.
+//! Stores the names that occur in loaded plans until the process ends.
 
 use std::cell::Cell;
 use std::collections::BTreeSet;
@@ -9,22 +9,22 @@ use mdle_runtime::{ModuleRead, PUBLISHED};
 use super::LoadError;
 use crate::fsm::AttributeRead;
 
-/// Maximum number of bytes of all names in the plans that a process loads.
+/// Maximum total length, in bytes, of all names in the plans that a process loads.
 ///
 /// The names of a quark are never freed, so the memory of a process grows with each loaded plan that has new
 /// names.
 pub const MOST_NAMES: usize = 1_000_000;
 
-/// The names of this process.
+/// The names that this process has stored.
 static NAMES: Mutex<KeptNames> = Mutex::new(KeptNames { kept: BTreeSet::new(), bytes: 0 });
 
-/// Number of bytes that new names in the plans from one source may still use. A separate budget prevents another
-/// robot's plans from using up the names that the operator's plans need.
+/// Number of bytes that the plans from one source may still use for new names. With a separate budget, another robot's
+/// plans cannot use up the names that the operator's plans need.
 #[derive(Debug)]
 pub struct NameBudget(Cell<usize>);
 
 impl NameBudget {
-    /// Returns a budget of this number of bytes.
+    /// Creates a budget of this number of bytes.
     #[must_use]
     pub fn new(bytes: usize) -> Self {
         Self(Cell::new(bytes))
@@ -36,7 +36,7 @@ impl NameBudget {
     }
 }
 
-/// Returns a name that is never freed; equal texts are kept once.
+/// Returns a copy of the name that is never freed. Equal names are stored only once.
 ///
 /// # Errors
 /// Fails if there are too many names.
@@ -44,7 +44,7 @@ pub(super) fn interned(name: &str, budget: &NameBudget) -> Result<&'static str, 
     NAMES.lock().unwrap_or_else(PoisonError::into_inner).keep(name, budget)
 }
 
-/// Returns attributes of modules as a list that is never freed; equal lists are kept once.
+/// Returns a list of module attributes that is never freed. Equal lists are stored only once.
 ///
 /// # Errors
 /// Fails if there are too many names, or too many attributes for one plan.
@@ -72,7 +72,7 @@ pub(super) fn reads(
     Ok(list)
 }
 
-/// The names kept so far, and the number of their bytes.
+/// The names that have been stored so far, and their total number of bytes.
 struct KeptNames {
     kept: BTreeSet<&'static str>,
     bytes: usize,
@@ -89,7 +89,7 @@ impl KeptNames {
         Ok(kept)
     }
 
-    /// Adds `more` to the number of bytes kept; fails if the maximum or the budget would be exceeded.
+    /// Adds `more` to the number of stored bytes. Fails if the maximum or the budget would be exceeded.
     fn count(&mut self, more: usize, budget: &NameBudget) -> Result<(), LoadError> {
         let bytes = self.bytes.saturating_add(more);
         if bytes > MOST_NAMES {

@@ -19,7 +19,7 @@ pub(super) struct QuarkMaker<'m> {
 }
 
 impl QuarkMaker<'_> {
-    /// Returns a condition with its quark created.
+    /// Converts a condition with the id of a quark to a condition with the quark itself.
     pub(super) fn condition<A: Alphabet>(
         self,
         condition: Condition<QuarkId>,
@@ -51,7 +51,7 @@ impl QuarkMaker<'_> {
         A::comparison(made).ok_or_else(|| LoadError::Unbound(quark.text.clone()))
     }
 
-    /// Returns the quark with this id, which `make` creates from its name and arguments.
+    /// Creates the quark with this id; `make` creates it from its name and arguments.
     pub(super) fn by_name<Q>(self, id: QuarkId, make: fn(&str, &[Argument<'_>]) -> Option<Q>) -> Result<Q, LoadError> {
         let Quark { name, overload, args, text, .. } = self.machine.quark(id);
         let declaration = self.alphabet.declarations_of(name).nth(*overload);
@@ -75,7 +75,7 @@ fn operator(comparison: &plan::Comparison) -> Operator {
     }
 }
 
-/// Returns an argument for a parameter of this kind.
+/// Converts a value to an argument for a parameter of this kind.
 fn argument<'v>(value: &'v Value, parameter: ParameterKind, budget: &NameBudget) -> Result<Argument<'v>, LoadError> {
     let si = value.in_si();
     Ok(match value {

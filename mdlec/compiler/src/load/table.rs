@@ -10,7 +10,7 @@ use mdle_runtime::{
 use super::Entered;
 use crate::fsm::{self, Element, Machine, PlanWords};
 
-/// A plan with its quarks created, before it begins.
+/// A loaded plan, with its quarks created, before it begins.
 pub struct Loaded<A: Alphabet> {
     brackets: Vec<Bracket>,
     atoms: Vec<Atom>,
@@ -44,11 +44,11 @@ pub(super) struct Owned<A: Alphabet> {
 /// The table rows of a loaded plan, with its memories.
 pub(super) type LoadedRows<A> = InRows<SharedTables<A>, Entered, Box<[u64]>, Memories<Box<[bool]>>>;
 
-/// Tables that several machines can run at the same time, each at its own position.
+/// Tables of a plan that several machines can run at the same time, each at its own position.
 pub struct SharedTables<A: Alphabet>(Arc<Loaded<A>>);
 
 impl<A: Alphabet> Loaded<A> {
-    /// Returns the attributes of modules that the plan reads.
+    /// Returns the module attributes that the plan reads.
     #[must_use]
     pub fn reads(&self) -> &'static [ModuleRead] {
         self.owned.reads
@@ -66,8 +66,7 @@ impl<A: Alphabet> Loaded<A> {
         Self { brackets, atoms, termination, owned, laws, conditions, names, entered, slots, memories, machine: None }
     }
 
-    /// Returns the plan as an observed plan, which records the moments of its turns. `machine` is the machine of this
-    /// plan.
+    /// Returns the plan as an observed plan, which records the moments of its turns; `machine` is the plan's machine.
     #[must_use]
     pub fn looked_at(self, machine: Arc<Machine>) -> Self {
         Self { machine: Some(machine), ..self }
@@ -81,12 +80,12 @@ impl<A: Alphabet> Loaded<A> {
         width.saturating_mul(levels)
     }
 
-    /// Returns `true` if a run keeps odometry, progress or memories.
+    /// Returns `true` if a run of the plan needs odometry, progress or memories.
     pub(super) fn observes(&self) -> bool {
         self.has_stamps() || self.memories() > 0
     }
 
-    /// Returns `true` if a run keeps odometry or progress.
+    /// Returns `true` if a run of the plan needs odometry or progress.
     pub(super) fn has_stamps(&self) -> bool {
         self.entered.has_stamps()
     }
@@ -96,7 +95,7 @@ impl<A: Alphabet> Loaded<A> {
         self.machine.clone()
     }
 
-    /// Returns the rows of the plan before it begins.
+    /// Returns the rows of the plan for a run that has not begun yet.
     pub(super) fn rows(self: &Arc<Self>) -> LoadedRows<A> {
         let width = u32::try_from(self.memories.0).unwrap_or(u32::MAX);
         let memory = Memories::new(width, vec![false; self.memories()].into());

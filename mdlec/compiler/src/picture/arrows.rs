@@ -1,4 +1,4 @@
-//! Computes the arrows between the boxes of a picture, which show the order of elements and the exits of scopes.
+//! Computes the arrows between the boxes of a picture. Arrows show the order of elements and the exits of scopes.
 
 use super::layout::{GAP, Placed, SIDE};
 use super::texts::until;
@@ -11,7 +11,7 @@ pub(super) enum Arrow {
     Flow,
     /// A line without a head, into the first element of a box or out of its last element.
     Port,
-    /// An arrow that leaves a scope when its own condition fires.
+    /// An arrow that leaves a scope, for the case that the scope's own condition fires.
     Exit,
     /// An arrow back to the beginning of a loop, for its next pass.
     Again,
@@ -26,9 +26,10 @@ pub(super) struct Polyline {
     pub(super) depth: usize,
 }
 
-/// Width of the margin on either side of the plan's box, for the signs at its beginning and end.
+/// Width of the margin on either side of the plan's box, which contains the signs for the beginning and the end of the
+/// plan.
 pub(super) const MARGIN: i64 = 44;
-/// Distance from a scope's upper edge to the arrow of its exit by its own condition.
+/// Distance from a scope's upper edge to the arrow that leaves the scope when its own condition fires.
 pub(super) const EXIT: i64 = 16;
 
 /// Returns all arrows, in the order of their boxes.
@@ -53,7 +54,7 @@ fn line(arrow: Arrow, depth: usize, points: &[(i64, i64)]) -> Polyline {
     Polyline { arrow, points: points.to_vec(), depth }
 }
 
-/// Appends the arrows between the children of a box, into the first and out of the last child.
+/// Appends the arrows inside a box: into the first child, between the children, and out of the last child.
 fn inside(element: Element<'_>, placed: &Placed, all: &[Placed], lines: &mut Vec<Polyline>) {
     let depth = placed.depth + 1;
     let (Some(first), Some(last)) = (element.children().next(), element.children().last()) else { return };
@@ -89,7 +90,7 @@ fn inside(element: Element<'_>, placed: &Placed, all: &[Placed], lines: &mut Vec
     lines.extend(exit(last, end, (port, from.1), from.0 + SIDE / 2));
 }
 
-/// Returns the points of an arrow from one box to the next box in its row, which may be at another height.
+/// Returns the points of an arrow from a box to the next box in its row, whose height may differ.
 fn beside(from: (i64, i64), to: (i64, i64)) -> Vec<(i64, i64)> {
     if from.1 == to.1 {
         return vec![from, to];
@@ -118,14 +119,14 @@ fn gap_above(child: usize, placed: &Placed, all: &[Placed]) -> i64 {
     tops.min().unwrap_or(0) - GAP / 2
 }
 
-/// Returns the arrow for the next pass of a loop, which leads below all elements of the loop back to the first element.
+/// Returns the arrow for the next pass of a loop. It leads back to the first element, below all elements of the loop.
 fn again(placed: &Placed, from: (i64, i64), to: (i64, i64)) -> Polyline {
     let (right, left, below) = (from.0 + SIDE / 2, to.0 - SIDE / 2, placed.y + placed.height - 16);
     line(Arrow::Again, placed.depth, &[from, (right, from.1), (right, below), (left, below), (left, to.1), to])
 }
 
-/// Returns the arrow of a scope's exit by its own condition, from the scope's right edge by way of the vertical line at
-/// `over` to `to`; an empty list for an element without such an exit.
+/// Returns the arrow that leaves a scope when its own condition fires. It leads from the scope's right edge to `to`, by
+/// way of the vertical line at `over`. The list is empty for an element that has no such exit.
 fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec<Polyline> {
     if !element.is_scope() || !until(element).ends() {
         return Vec::new();
@@ -134,7 +135,7 @@ fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec
     vec![line(Arrow::Exit, placed.depth, &[from, (over, from.1), (over, to.1), to])]
 }
 
-/// Returns the arrow of a scope's exit by its own condition, for a scope at the end of a row. If the scope can also end
+/// Returns the arrow that leaves a scope at the end of a row when its own condition fires. If the scope can also end
 /// with its last element, the arrow stops in the gap below the row, where it joins the arrow from the last element;
 /// otherwise it continues to `to`.
 fn exit_below(element: Element<'_>, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Polyline> {

@@ -1,4 +1,4 @@
-//! Writes a plan in Graphviz's language, with scopes and loops as clusters, atoms as nodes, and exits as edges.
+//! Writes a plan in Graphviz's language. Scopes and loops become clusters, atoms become nodes, and exits become edges.
 
 use mdle_runtime::{Printable, is_printable};
 
@@ -13,7 +13,8 @@ use crate::fsm::{Atom, Element, ElementKind, Machine, Visit};
 const LETTERS: usize = 30;
 /// Maximum number of lines of a label.
 const LINES: usize = 3;
-/// Maximum number of edges. An element with which several loops end has an edge for each of these loops.
+/// Maximum number of edges. If several loops can end together with an element, the element has an edge for each of
+/// them.
 const EDGES: usize = 10_000;
 
 /// Returns the plan in Graphviz's language.
@@ -119,7 +120,8 @@ impl Graph {
     }
 }
 
-/// Returns `true` if a destination is inside the element itself: an edge cannot begin at a cluster in which it ends.
+/// Returns `true` if a destination is inside the element itself. Such an edge cannot be drawn, because an edge cannot
+/// end inside the cluster at which it begins.
 fn leads_inside(destination: Destination<'_>, element: Element<'_>) -> bool {
     match destination {
         Destination::After { .. } | Destination::Over { .. } => false,
@@ -135,7 +137,7 @@ fn id(atom: Atom<'_>) -> String {
     format!("a{}", atom.number() + 1)
 }
 
-/// Returns a text as a label of a few lines.
+/// Converts a text to a label of a few lines.
 fn label(text: &str) -> String {
     let lines = wrapped(text, LETTERS, LINES);
     let lines: Vec<_> = lines.iter().map(|line| escaped(line)).collect();

@@ -4,7 +4,7 @@
 use super::texts::until;
 use crate::fsm::{Element, ElementKind, Exit, Machine};
 
-/// A destination to which the end of an element leads.
+/// A destination to which the end of an element can lead.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Destination<'m> {
     /// The next element; `last_pass` is `true` if only the last pass of a loop leads there.
@@ -15,8 +15,8 @@ pub(super) enum Destination<'m> {
     Over { last_pass: bool },
 }
 
-/// Returns the destinations of an element: the beginning of each loop that ends with the element, and the element after
-/// these loops.
+/// Returns the destinations of an element: the beginnings of loops that end together with the element, and the element
+/// after these loops.
 pub(super) fn destinations(element: Element<'_>) -> Vec<Destination<'_>> {
     let (mut all, mut exit, mut last_pass) = (Vec::new(), element.exit(), false);
     loop {
@@ -47,13 +47,13 @@ pub(super) fn destinations(element: Element<'_>) -> Vec<Destination<'_>> {
 /// Ways in which an element can end.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WaysOut {
-    /// `true` if the element can end, by itself or with its last element.
+    /// `true` if the element can end, either by itself or together with its last element.
     pub(super) ever: bool,
-    /// `true` if the element can end with its last element, or is an atom that can end.
+    /// `true` if the element can end together with its last element, or is an atom that can end.
     pub(super) at_its_end: bool,
 }
 
-/// Returns the ways in which each element can end, indexed by the element's number.
+/// Returns the ways in which each element can end; the index is the element's number.
 pub(super) fn ends(machine: &Machine) -> Vec<WaysOut> {
     let mut ends = vec![WaysOut::default(); machine.elements().len()];
     // In reverse order, nested elements come before the elements that enclose them.

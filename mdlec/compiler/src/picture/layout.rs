@@ -1,4 +1,4 @@
-//! Computes positions of the boxes of a picture: children are in rows inside their scope or loop.
+//! Computes the positions of boxes in a picture. The children of a scope or a loop are arranged in rows inside it.
 
 use super::exits::ends;
 use super::measure::{LINE, letters, width, wrapped};
@@ -8,14 +8,14 @@ use crate::plan::frame_text;
 
 /// Maximum width of a picture, in pixels, unless a single element is wider.
 const PICTURE: i64 = 1180;
-/// Minimum width of a box's content at any depth, in pixels.
+/// Minimum width of a box's content, in pixels, regardless of the nesting depth.
 const LEAST: i64 = 400;
 /// Distance between adjacent boxes, and between a box and its content, in pixels.
 pub(super) const GAP: i64 = 34;
 pub(super) const SIDE: i64 = 26;
 const BETWEEN_ROWS: i64 = 34;
 const BOTTOM: i64 = 16;
-/// Height below the content of a loop for the arrow to the next pass, in pixels.
+/// Height, in pixels, below the content of a loop, where the arrow to the next pass is drawn.
 const AGAIN: i64 = 30;
 const PADDING: i64 = 10;
 /// Maximum width of an atom's text, in characters.
@@ -32,7 +32,7 @@ pub(super) enum Style {
     Quiet,
 }
 
-/// The box of a bracket. During the computation its position is relative to the enclosing box.
+/// The box of a bracket. While boxes are being computed, its position is relative to the enclosing box.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Placed {
     pub(super) x: i64,
@@ -52,12 +52,12 @@ pub(super) struct Placed {
     pub(super) depth: usize,
     /// `true` if the element can end.
     pub(super) ends: bool,
-    /// `true` if the element can end with its last element, or is an atom that can end.
+    /// `true` if the element can end together with its last element, or is an atom that can end.
     pub(super) flows: bool,
 }
 
-/// Returns the boxes of all elements, indexed by the element's number. Recursion is not needed, because an element's
-/// number is greater than the numbers of the elements that enclose it.
+/// Returns the boxes of all elements; the index is the element's number. No recursion is needed, because enclosing
+/// elements have smaller numbers.
 pub(super) fn places(machine: &Machine) -> Vec<Placed> {
     let mut all: Vec<Placed> = Vec::new();
     for (element, ends) in machine.elements().zip(ends(machine)) {
@@ -117,7 +117,7 @@ fn widest(lines: &[(Style, String)]) -> i64 {
     lines.iter().map(|(_, line)| width(line)).max().unwrap_or(0)
 }
 
-/// Places the children of a scope or a loop, whose sizes are known, and computes the size of the scope or loop.
+/// Places the children of a scope or a loop, and computes its size. The sizes of the children must already be known.
 fn holder(element: Element<'_>, all: &mut [Placed]) {
     let number = element.index();
     let children = all[number].children.clone();
@@ -169,8 +169,8 @@ fn head(element: Element<'_>, content: i64) -> Vec<(Style, String)> {
     }
 }
 
-/// Returns the smallest width at which the children need no more rows than in the width `room`, so that the rows are
-/// about equally long.
+/// Returns the smallest width at which the children need no more rows than at the width `room`. With this width, the
+/// rows are about equally long.
 fn even(children: &[usize], all: &[Placed], room: i64) -> i64 {
     let needed = rows(children, all, room).len();
     let (mut low, mut high) = (0, room);
@@ -185,7 +185,7 @@ fn even(children: &[usize], all: &[Placed], room: i64) -> i64 {
     high
 }
 
-/// Returns the children in rows, each at most `limit` wide unless a single child is wider.
+/// Arranges the children in rows. Each row is at most `limit` wide, unless a single child is wider.
 fn rows(children: &[usize], all: &[Placed], limit: i64) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = Vec::new();
     let mut taken = 0;

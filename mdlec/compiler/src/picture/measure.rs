@@ -1,4 +1,4 @@
-//! Estimates the size of text in a picture by a fixed width of characters, so that no font is needed.
+//! Estimates the size of text in a picture. All characters are assumed to have the same width, so no font is needed.
 
 /// Width of ten characters, in pixels.
 const TEN_LETTERS: i64 = 73;
@@ -15,13 +15,13 @@ pub(super) fn letters(width: i64) -> usize {
     usize::try_from(width.max(0) * 10 / TEN_LETTERS).unwrap_or(0)
 }
 
-/// Returns the number of columns of a text: two for a character of the East Asian scripts.
+/// Returns the number of columns that a text needs: two for a character of East Asian scripts, one for any other.
 fn columns(text: &str) -> i64 {
     text.chars().map(|letter| if letter < '\u{1100}' { 1 } else { 2 }).sum()
 }
 
 /// Breaks a text into at most `lines` lines of at most `letters` characters: before OR and AND where possible,
-/// otherwise between words. Text that does not fit is left out, and the last line then ends with `…`.
+/// otherwise between words. Text that does not fit is omitted, and the last line then ends with `…`.
 pub(super) fn wrapped(text: &str, letters: usize, lines: usize) -> Vec<String> {
     let letters = letters.max(4);
     // No more than this is ever shown, so the rest of a long text is not processed.

@@ -1,6 +1,6 @@
-//! Writes a plan in the language of mermaid, as a `stateDiagram-v2` with scopes and loops as composite states.
+//! Writes a plan in the language of mermaid, as a `stateDiagram-v2` in which scopes and loops are composite states.
 //!
-//! In mermaid no transition leads from inside a composite state to the outside. The end of an element is therefore
+//! In mermaid, no transition leads from inside a composite state to the outside. Therefore, the end of an element is
 //! drawn in steps: the last element leads to the end of the enclosing element, and the enclosing element leads on.
 
 use mdle_runtime::{Printable, is_printable};
@@ -12,7 +12,8 @@ use super::texts::{exponent, labels, law, passes, until};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Element, ElementKind, Exit, Machine, Visit};
 
-/// Maximum number of characters of a condition or a law, because mermaid does not break the lines of labels.
+/// Maximum number of characters of a condition or a law. Longer texts are cut, because mermaid does not break the lines
+/// of labels.
 const LETTERS: usize = 60;
 
 /// Returns the plan as a state diagram.
@@ -44,7 +45,7 @@ impl Diagram {
         self.text += &format!("{:indent$}{text}\n", "");
     }
 
-    /// Writes the state of an element; for a scope or a loop, up to the beginning of the states inside it.
+    /// Writes the state of an element. For a scope or a loop, stops at the beginning of the states inside it.
     fn enter(&mut self, element: Element<'_>) {
         let (labels, number) = (labels(element), element.number());
         let title = match element.kind() {
@@ -63,8 +64,8 @@ impl Diagram {
         self.line(&format!("[*] --> b{}", number + 1));
     }
 
-    /// Writes the transitions that leave an element: when its condition fires, and when the last element inside it
-    /// ends.
+    /// Writes the transitions that leave an element: one for when its condition fires, and one for when the last
+    /// element inside it ends.
     fn leave(&mut self, element: Element<'_>) {
         if element.atom().is_none() {
             self.depth -= 1;

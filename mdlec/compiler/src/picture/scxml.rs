@@ -1,13 +1,13 @@
 //! Writes a plan as a state machine in W3C SCXML that behaves like the plan.
 //!
-//! In SCXML the transitions of inner states take precedence, and in MDLe the transitions of outer scopes. So there are
-//! no nested states: each atom of the expanded plan is a state, and has the transitions of all its enclosing scopes in
-//! document order, the outermost first. Where SCXML would enter nested states, assignments reset the variables of the
+//! In SCXML, transitions of inner states take precedence; in MDLe, transitions of outer scopes do. Therefore, there are
+//! no nested states. Each atom of the expanded plan is a state, and has the transitions of all its enclosing scopes in
+//! document order, the outermost first. In place of entering nested states, assignments reset the variables of the
 //! scopes that restart.
 //!
-//! An event `turn` carries the content of a line of a script (`t`, `way`, `fired`, `completed`). Then transitions
-//! without an event are taken as long as one is enabled, at most [`TRANSITIONS_PER_TURN`]. The variable `law` contains
-//! the law that is applied.
+//! An event `turn` carries the content of a script's line (`t`, `way`, `fired`, `completed`). After it, transitions
+//! without an event are taken as long as such a transition is enabled, but at most [`TRANSITIONS_PER_TURN`]. The
+//! variable `law` contains the law that is applied.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ use crate::plan::{Condition, Mark, Nondegenerate, Plan, Quark, RecordId};
 
 /// Maximum length of the SCXML text, in bytes.
 const LONGEST: usize = 64 << 20;
-/// Value, before the first turn, of the variable `n`, which counts the transitions of a turn.
+/// Value before the first turn of the variable `n`, which counts the transitions of a turn.
 const BEFORE: u32 = TRANSITIONS_PER_TURN + 1;
 
 /// Returns the plan as a state machine in SCXML.
@@ -55,10 +55,10 @@ pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
 struct ScxmlWriter<'m, 'p> {
     plan: &'p Plan,
     made: &'m Matrices<'p>,
-    /// `true` if the plan reads the length of the driven path; computed once, because the states may have many
+    /// `true` if the plan reads the length of the driven path. This is computed once, because the states may have many
     /// conditions.
     drives: bool,
-    /// For each state, the interrupts of its enclosing scopes, outermost first.
+    /// For each state, the interrupts of its enclosing scopes; the outermost comes first.
     listing: Vec<Vec<usize>>,
     /// Number of facts of each record.
     facts: BTreeMap<RecordId, u32>,
@@ -182,8 +182,8 @@ impl<'p> ScxmlWriter<'_, 'p> {
         self.line(2, "</transition>");
     }
 
-    /// Writes the transition of an interrupt under the condition `when`; `by_condition` is `false` if the cause is the
-    /// completion of the law.
+    /// Writes the transition of an interrupt under the condition `when`. `by_condition` is `false` if the completion of
+    /// the law causes the transition.
     fn leave(&mut self, number: usize, when: &str, by_condition: bool) {
         let made = self.made;
         let transition = &made.transitions[number];
@@ -209,7 +209,7 @@ impl<'p> ScxmlWriter<'_, 'p> {
         self.line(2, "</transition>");
     }
 
-    /// Writes the assignments to the facts that `after` tests and that change when the transition ends elements.
+    /// Writes assignments to the facts that `after` tests and that change when the transition ends elements.
     fn record(&mut self, transition: &Transition<'p>, number: usize, by_condition: bool) {
         let own = transition.marks.iter().map(|mark| (mark, by_condition));
         let ended: Vec<(&Mark, bool)> = own.chain(transition.ends_with.iter().map(|mark| (*mark, false))).collect();
@@ -244,7 +244,8 @@ impl<'p> ScxmlWriter<'_, 'p> {
         }
     }
 
-    /// Returns the ECMAScript expression for a condition of this interrupt, which is true if the condition has fired.
+    /// Returns the ECMAScript expression for a condition of this interrupt. The expression is true if the condition has
+    /// fired.
     fn expression(&self, condition: &Condition, number: usize) -> String {
         let joined = |operands: &[Condition], sign: &str| {
             let operands: Vec<_> = operands.iter().map(|operand| self.expression(operand, number)).collect();
@@ -283,27 +284,27 @@ fn owned((id, value): (&str, &str)) -> (String, String) {
     (id.to_owned(), value.to_owned())
 }
 
-/// Returns the variable for the time at which the scope of an interrupt was entered.
+/// Returns the name of the variable for the time at which the scope of an interrupt was entered.
 fn entered(number: usize) -> String {
     format!("entered{}", number + 1)
 }
 
-/// Returns the variable for the odometer's reading when the scope of an interrupt was entered.
+/// Returns the name of the variable for the odometer reading at which the scope of an interrupt was entered.
 fn begun(number: usize) -> String {
     format!("begun{}", number + 1)
 }
 
-/// Returns the variable for a memory of RISING.
+/// Returns the name of the variable for a memory of RISING.
 fn risen(number: usize, memory: u32) -> String {
     format!("risen{}_{memory}", number + 1)
 }
 
-/// Returns the variable for a fact of a record.
+/// Returns the name of the variable for a fact of a record.
 fn fact(record: RecordId, number: u32) -> String {
     format!("fact{}_{number}", record.0)
 }
 
-/// Returns a quark's text as a string of ECMAScript, in which strings of JSON are valid.
+/// Returns a quark's text as an ECMAScript string; every JSON string is also a valid ECMAScript string.
 fn text(quark: &Quark) -> String {
     // Serializing a string cannot fail.
     let text = serde_json::to_string(&quark.text).unwrap_or_default();

@@ -33,7 +33,7 @@ pub fn svg(machine: &Machine) -> Result<String, Diagnostic> {
     drawn(machine, None)
 }
 
-/// Returns the picture of a plan with the number of times that each atom began in some runs; atoms that never began are
+/// Returns the picture of a plan. It also shows how many times each atom began in some runs; atoms that never began are
 /// faint.
 ///
 /// # Errors
@@ -57,7 +57,7 @@ fn drawn(machine: &Machine, began: Option<&[u64]>) -> Result<String, Diagnostic>
 struct SvgPicture<'p> {
     machine: &'p Machine,
     all: &'p [Placed],
-    /// Number of times that each atom began, if the picture shows it.
+    /// Number of times that each atom began; `None` if the picture does not show these numbers.
     began: Option<&'p [u64]>,
     text: String,
 }
@@ -115,7 +115,7 @@ impl SvgPicture<'_> {
         }
     }
 
-    /// Returns the text of the legend for the signs that are in this picture.
+    /// Returns the text of the legend, which explains the signs that occur in this picture.
     fn meanings(&self) -> String {
         let mut meanings = Vec::new();
         if self.machine.elements().any(|element| element.is_scope() && until(element).ends()) {
@@ -127,7 +127,7 @@ impl SvgPicture<'_> {
         meanings.join(" ")
     }
 
-    /// Draws all boxes, the outer boxes first, so that inner boxes cover them.
+    /// Draws all boxes. Outer boxes are drawn first, so that inner boxes cover them.
     fn boxes(&mut self) {
         for (element, placed) in self.machine.elements().zip(self.all) {
             let (x, y, width, height) = (placed.x, placed.y, placed.width, placed.height);
@@ -146,7 +146,7 @@ impl SvgPicture<'_> {
         }
     }
 
-    /// Returns the number of times that an atom began, if the picture shows it.
+    /// Returns the number of times that an atom began; `None` if the picture does not show this number.
     fn count(&self, element: Element<'_>) -> Option<u64> {
         self.began?.get(element.atom()?.index()).copied()
     }
@@ -211,7 +211,7 @@ fn rounded(points: &[(i64, i64)]) -> String {
     path
 }
 
-/// Returns the point on the line from `from` to `to` at which a corner begins, at most halfway.
+/// Returns the point on the line from `from` to `to` at which a rounded corner begins. The point is at most halfway.
 fn towards(from: (i64, i64), to: (i64, i64)) -> (i64, i64) {
     let step = |from: i64, to: i64| from + (to - from).signum() * ROUND.min((to - from).abs() / 2);
     (step(from.0, to.0), step(from.1, to.1))

@@ -3,10 +3,10 @@
 use crate::fsm::{Atom, Element, ElementKind};
 use crate::plan::{Condition, Interrupt, frame_text};
 
-/// Maximum length of a tooltip, in characters: nobody reads a longer text.
+/// Maximum length of a tooltip, in characters, because nobody reads a longer text.
 const TOOLTIP: usize = 4000;
 
-/// Condition that ends an atom or a scope, in a form for a picture.
+/// Condition that ends an atom or a scope, in the form that pictures show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Until {
     /// The element ends when this condition fires.
@@ -15,7 +15,8 @@ pub(super) enum Until {
     Done,
     /// The atom ends when this condition fires or its law completes.
     FiresOrDone(String),
-    /// The element has no condition, because its condition, with this text, was removed: an outer scope repeats it.
+    /// The element has no condition any more: its condition, with this text, was removed because an outer scope repeats
+    /// it.
     Removed(String),
     /// The element has no condition.
     Never,
@@ -54,12 +55,13 @@ impl Until {
     }
 }
 
-/// Returns the condition that ends an element by itself; a loop has no such condition.
+/// Returns the condition that ends an element by itself. A loop has no such condition.
 pub(super) fn until(element: Element<'_>) -> Until {
     element.interrupt().map_or(Until::Never, |interrupt| Until::of(interrupt, element.completes()))
 }
 
-/// Returns the labels of the elements that end with this element, such as `s1: `; an empty text if there are no labels.
+/// Returns the labels of the elements that end together with this element, such as `s1: `; empty if there are no
+/// labels.
 pub(super) fn labels(element: Element<'_>) -> String {
     element.marks().iter().rev().map(|mark| format!("{}: ", mark.label)).collect()
 }
@@ -69,7 +71,7 @@ pub(super) fn law(atom: Atom<'_>) -> String {
     format!("{}{}", frame_text(atom.frame()), atom.law().text)
 }
 
-/// Returns the text of a tooltip with all data of an element in a few lines.
+/// Returns the text of a tooltip: all data of an element, in a few lines.
 pub(super) fn tooltip(element: Element<'_>) -> String {
     let (labels, until) = (labels(element), until(element));
     let text = match element.kind() {

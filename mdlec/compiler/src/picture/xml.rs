@@ -1,8 +1,8 @@
-//! Escapes text for XML; characters that XML does not allow are replaced by their numbers.
+//! Escapes text for XML, and replaces characters that XML does not allow with their numbers.
 
 use mdle_runtime::{Printable, is_printable};
 
-/// Returns the text in the form of XML content or of an attribute's value in double quotes.
+/// Returns the text in a form that is valid as XML content and as an attribute value in double quotes.
 pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {

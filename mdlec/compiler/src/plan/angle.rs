@@ -1,9 +1,9 @@
-//! Writes angles in degrees if a number with at most six decimals represents the angle up to rounding errors.
+//! Writes angles in degrees, if the angle is a number of degrees with at most six decimals (up to rounding errors).
 
 use mdle_runtime::Radians;
 
-/// Returns the angle in degrees, rounded to a millionth, if this changes the angle by no more than the rounding errors
-/// of a sum; `None` otherwise.
+/// Returns the angle in degrees, rounded to a millionth, if this rounding changes the angle by no more than the
+/// rounding errors of a sum; `None` otherwise.
 #[must_use]
 pub fn in_degrees(radians: f64) -> Option<f64> {
     let degrees = (radians.to_degrees() * 1e6).round() / 1e6;

@@ -1,4 +1,4 @@
-//! Checks arguments against a signature: count, type, unit, range (docs/src/reference/language.md, 6.2).
+//! Checks arguments against a signature: their number, types, units and ranges (docs/src/reference/language.md, 6.2).
 
 mod examples;
 mod numbers;
@@ -16,13 +16,13 @@ use examples::swapped;
 use numbers::bits;
 use wrong_count::wrong_count;
 
-/// The arguments of a quark, with their part of the quark text.
+/// The arguments of a quark, and the text of the arguments in the quark text.
 pub(super) struct Arguments {
     pub(super) values: Vec<Value>,
     pub(super) words: Vec<String>,
 }
 
-/// Converts and checks the arguments of `call` for `declaration`.
+/// Converts the arguments of `call` to the types that `declaration` demands, and checks them.
 pub(super) fn fit(
     call: &Call,
     declaration: &Declaration,
@@ -72,8 +72,8 @@ fn fitted(
     }
 }
 
-/// Returns the number of errors in a call of this declaration: arguments that are missing, superfluous, or of the wrong
-/// kind.
+/// Returns the number of errors in the call if it is a call of this declaration: arguments that are missing,
+/// superfluous, or of the wrong kind.
 pub(super) fn complaints(call: &Call, declaration: &Declaration, parameters: &Parameters<'_>) -> usize {
     let params = &declaration.params;
     let needed = params.iter().filter(|param| param.default.is_none()).count();
@@ -85,8 +85,8 @@ pub(super) fn complaints(call: &Call, declaration: &Declaration, parameters: &Pa
     wrong + needed.saturating_sub(call.args.len()) + call.args.len().saturating_sub(params.len())
 }
 
-/// Writes a quark with its parameters and their units, such as `go <v in cm/s> <omega in rad/s>`; optional parameters
-/// are in square brackets.
+/// Returns the text of a quark with its parameters and their units, such as `go <v in cm/s> <omega in rad/s>`. Optional
+/// parameters are in square brackets.
 #[must_use]
 pub fn signature(declaration: &Declaration) -> String {
     let mut text = declaration.name.clone();
@@ -115,8 +115,8 @@ pub fn signature(declaration: &Declaration) -> String {
     text
 }
 
-/// Converts a number to a value of the kind of `unit`, with its text in that unit; error messages name
-/// `declaration`. A number without a unit has the unit `bare`.
+/// Converts a number to a value in the unit `unit`, and adds the text of the value in this unit. Error messages name
+/// `declaration`. A number that is written without a unit has the unit `bare`.
 pub(super) fn value(number: &Number, bare: Unit, unit: Unit, declaration: &Declaration) -> Fitted {
     let param = Param {
         name: String::new(),
@@ -142,8 +142,8 @@ struct Fitting<'a> {
 }
 
 impl Fitting<'_> {
-    /// Converts an argument. If the argument is the name of a parameter, converts the argument that the parameter was
-    /// given.
+    /// Converts an argument. If the argument is the name of a parameter, converts the argument that was passed for this
+    /// parameter.
     fn given(&self, arg: &Arg, param: &Param, parameters: &Parameters<'_>) -> Fitted {
         if let Arg::Name(name) = arg
             && parameters.is_untyped(name.node)
@@ -240,7 +240,7 @@ impl Fitting<'_> {
     }
 }
 
-/// Writes a call as in the plan, without its parentheses.
+/// Returns a call as written in the plan, without its parentheses.
 pub(super) fn written(call: &Call) -> String {
     let args = call.args.iter().map(|arg| match arg {
         Arg::Number(number) => format!("{}{}", number.digits(), number.unit().unwrap_or_default()),
@@ -256,7 +256,7 @@ pub(super) fn written(call: &Call) -> String {
 fn is_name(text: &str) -> bool {
     text.starts_with(|c: char| c.is_alphabetic() || c == '_') && text.chars().all(|c| c.is_alphanumeric() || c == '_')
 }
-/// Names a kind of quark for messages.
+/// Returns the name of a kind of quark, for messages.
 pub(super) fn kind_words(kind: DeclarationKind) -> &'static str {
     match kind {
         DeclarationKind::Control => "a law",

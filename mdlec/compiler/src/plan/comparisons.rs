@@ -1,5 +1,5 @@
-//! Resolves comparisons of signals, including `t` and `way`, the time and the path driven since the scope was entered
-//! (docs/src/reference/semantics.md, 2.4).
+//! Resolves comparisons of signals. The signals include `t` and `way`, which are the time and the length of the driven
+//! path since the scope was entered (docs/src/reference/semantics.md, 2.4).
 
 use super::arguments::{Fitted, value};
 use super::parameters::{DefinitionNames, Parameter};
@@ -11,7 +11,7 @@ use crate::syntax::tree::{self, Arg, Call, Number, Operand};
 
 /// Name of the signal for the time.
 const TIME: &str = "t";
-/// Name of the signal for the length of the path driven.
+/// Name of the signal for the length of the driven path.
 const WAY: &str = "way";
 
 type Resolved<T> = Result<T, Vec<Diagnostic>>;
@@ -22,7 +22,7 @@ struct SignalCall<'a> {
     quark: QuarkId,
     declaration: &'a Declaration,
     unit: Unit,
-    /// Tolerance of `==`, in `unit`.
+    /// Tolerance of `==`, in the unit `unit`.
     tolerance: f64,
 }
 
@@ -43,7 +43,7 @@ pub fn is_time(declaration: &Declaration) -> bool {
         && declaration.unit.is_some_and(|(unit, _)| unit.kind == ParameterKind::Time)
 }
 
-/// Returns `true` if a declaration is the signal `way`, the length of the path driven since a scope was entered.
+/// Returns `true` if a declaration is the signal `way`, the length of the driven path since a scope was entered.
 #[must_use]
 pub fn is_way(declaration: &Declaration) -> bool {
     declaration.name == WAY
@@ -135,7 +135,7 @@ fn like_parameter(call: &Call, quarks: &ResolvedQuarks<'_>, names: DefinitionNam
     call.args.is_empty().then(|| found.fix("did you mean {}?", call.name_span(), near))
 }
 
-/// Returns the argument given to a parameter, as a value to compare a signal with.
+/// Converts the argument that was passed for a parameter to a value with which a signal is compared.
 fn given(parameter: &Parameter<'_>, at: Span, signal: SignalCall<'_>) -> Fitted {
     let SignalCall { unit, declaration, .. } = signal;
     if parameter.kind != unit.kind {
@@ -152,7 +152,7 @@ fn given(parameter: &Parameter<'_>, at: Span, signal: SignalCall<'_>) -> Fitted 
     }
 }
 
-/// Returns `inf`, which is allowed only in a comparison of a time.
+/// Converts `inf`, which is allowed only in a comparison of a time, to a value.
 fn without_end(at: Span, SignalCall { unit, declaration, .. }: SignalCall<'_>) -> Fitted {
     if unit.kind == ParameterKind::Time {
         return Ok((Value::Infinity(unit.kind), "inf".into()));
@@ -162,7 +162,7 @@ fn without_end(at: Span, SignalCall { unit, declaration, .. }: SignalCall<'_>) -
     Err(Diagnostic::new(Code::E0302, message, at, here).help("only a time is without end, as in `t > inf`").into())
 }
 
-/// Returns the tolerance for a comparison of two signals: the larger one.
+/// Returns the tolerance for a comparison of two signals, which is the larger one of their tolerances.
 fn same_kind(one: SignalCall<'_>, other: SignalCall<'_>, span: Span) -> Resolved<Value> {
     let refused = |message: String, help: &str| {
         let [here, there] =
@@ -189,17 +189,17 @@ fn same_kind(one: SignalCall<'_>, other: SignalCall<'_>, span: Span) -> Resolved
     Ok(if si(one) >= si(other) { one.tolerance() } else { other.tolerance() })
 }
 
-/// A signal that counts from the entry of a scope.
+/// A signal whose value is zero when its scope is entered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum EntrySignal {
-    /// The signal `t`, compared in nanoseconds.
+    /// The signal `t`, which is compared in nanoseconds.
     Time,
-    /// The signal `way`, compared in nanometres.
+    /// The signal `way`, which is compared in nanometres.
     Way,
 }
 
-/// Returns the interval in which a comparison of `t` or `way` is true: its start and its exclusive end, in nanoseconds
-/// or nanometres. The end is `None` if the interval has no end.
+/// Returns the interval in which a comparison of `t` or `way` is true, in nanoseconds or nanometres. The start belongs
+/// to the interval, the end does not; the end is `None` if the interval has no end.
 fn interval(comparison: &Comparison, counted: EntrySignal, span: Span) -> Resolved<(u64, Option<u64>)> {
     let nanos = |value: &Value| match value {
         Value::Quantity { exact, .. } => exact.to_nanos(),
@@ -231,7 +231,8 @@ fn interval(comparison: &Comparison, counted: EntrySignal, span: Span) -> Resolv
     })
 }
 
-/// Resolves `call` to a signal: `x`, also `x(t)`; `r 3`, also `r3`, `r_3` and `r_3(t)`.
+/// Resolves `call` to a signal. Accepts `x` and `x(t)` for a signal without arguments, and `r 3`, `r3`, `r_3` and
+/// `r_3(t)` for a signal with one.
 fn signal<'a>(
     call: &Call,
     quarks: &mut ResolvedQuarks<'a>,
@@ -258,7 +259,7 @@ fn is_signal(name: &str, quarks: &ResolvedQuarks<'_>) -> bool {
     quarks.alphabet().declarations_of(name).any(|declaration| declaration.kind == DeclarationKind::Signal)
 }
 
-/// Reads `r_3` as the signal `r` with the number 3, if there is a signal `r` with a sonar as its only parameter.
+/// Interprets `r_3` as the signal `r` with the number 3, if there is a signal `r` whose only parameter is a sonar.
 fn indexed<'s>(call: &Call<'s>, quarks: &ResolvedQuarks<'_>) -> (&'s str, Option<Number<'s>>) {
     let base = call.name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     let digits = &call.name[base.len()..];

@@ -1,38 +1,38 @@
-//! Conditions of a resolved plan (docs/src/reference/semantics.md, 2), and their evaluation in a situation.
+//! Conditions of a resolved plan (docs/src/reference/semantics.md, 2), and the evaluation of conditions in a situation.
 
 use super::{QuarkId, RecordId};
 
 /// A condition, which is `true` when it has fired.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
-    /// Never fires: `null`, `wait inf`, or an interrupt that degeneracy removal has replaced.
+    /// Never fires: `null`, `wait inf`, or a condition that degeneracy removal has replaced.
     Null,
     /// An interrupt quark.
     Quark(QuarkId),
     /// Fires once this many nanoseconds have passed since the scope of the interrupt was entered.
     Wait {
-        /// Waiting time in nanoseconds.
+        /// Time to wait, in nanoseconds.
         nanos: u64,
-        /// Quark of the timer, for its text and its exact value.
+        /// Quark of the timer, which provides its text and its exact value.
         quark: QuarkId,
     },
     /// Fires while the time since the scope of the interrupt was entered is in this interval: a comparison of `t`.
     Elapsed {
         /// Nanoseconds at which the interval begins.
         from: u64,
-        /// Nanoseconds at which the interval ends, exclusive; `None` if it never ends.
+        /// Nanoseconds at which the interval ends, not included; `None` if it never ends.
         until: Option<u64>,
-        /// Quark of the comparison, for its text.
+        /// Quark of the comparison, which provides its text.
         quark: QuarkId,
     },
-    /// Fires while the length of the path driven since the scope of the interrupt was entered is in this interval: a
+    /// Fires while the length of the driven path since the scope of the interrupt was entered is in this interval: a
     /// comparison of `way`.
     Driven {
         /// Nanometres at which the interval begins.
         from: u64,
-        /// Nanometres at which the interval ends, exclusive; `None` if it never ends.
+        /// Nanometres at which the interval ends, not included; `None` if it never ends.
         until: Option<u64>,
-        /// Quark of the comparison, for its text.
+        /// Quark of the comparison, which provides its text.
         quark: QuarkId,
     },
     /// Fires when at least one of two or more operands has fired.
@@ -43,7 +43,7 @@ pub enum Condition {
     Not(Box<Condition>),
     /// RISING: fires when the operand fires, if the memory records that the operand was false before.
     Rising {
-        /// Number of the memory among those of the interrupt.
+        /// Index of the memory among the memories of the interrupt.
         memory: u32,
         /// Operand of RISING.
         operand: Box<Condition>,
@@ -55,7 +55,7 @@ pub enum Condition {
 /// A condition `after L` or `after L c`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct After {
-    /// Use of the definition whose record the condition reads.
+    /// Record that the condition reads; it belongs to one use of a definition.
     pub record: RecordId,
     /// Number of the fact that the condition reads.
     pub fact: u32,
@@ -63,22 +63,22 @@ pub struct After {
     pub text: String,
 }
 
-/// Facts that a condition reads from the machine that runs the plan, about one scope.
+/// State of the machine that runs a plan, as far as a condition of one scope reads it.
 pub trait Situation {
     /// Returns `true` if the quark has fired.
     fn quark(&self, quark: QuarkId) -> bool;
     /// Returns `true` if at least `nanos` nanoseconds have passed since the scope was entered.
     fn waited(&self, nanos: u64) -> bool;
-    /// Returns `true` if at least `nanometers` nanometres have been driven since the scope was entered.
+    /// Returns `true` if the robot has driven at least `nanometers` nanometres since the scope was entered.
     fn driven(&self, nanometers: u64) -> bool;
     /// Returns `true` if this memory of the scope's interrupt is set.
     fn remembers(&self, memory: u32) -> bool;
-    /// Returns `true` if this fact of a record holds.
+    /// Returns `true` if this fact is set in the record.
     fn recorded(&self, record: RecordId, fact: u32) -> bool;
 }
 
 impl Condition {
-    /// Returns `true` if the condition has fired in a situation. Reads every operand.
+    /// Returns `true` if the condition has fired in this situation. Evaluates every operand.
     pub fn fired(&self, at: &impl Situation) -> bool {
         match self {
             Self::Null => false,
@@ -94,7 +94,7 @@ impl Condition {
         }
     }
 
-    /// Returns the operands of the outermost OR, as written; the condition itself if it is not an OR.
+    /// Returns the operands of the outermost OR, in the order of the text; the condition itself if it is not an OR.
     #[must_use]
     pub fn operands(&self) -> &[Self] {
         if let Self::Or(operands) = self { operands } else { std::slice::from_ref(self) }
@@ -106,7 +106,7 @@ impl Condition {
         (0..).zip(self.operands()).find(|(_, operand)| operand.fired(at)).map_or(0, |(number, _)| number)
     }
 
-    /// Returns the direct operands of the condition, from left to right; a quark, a timer or `after` has none.
+    /// Returns the direct operands of the condition, from left to right; empty for a quark, a timer or `after`.
     #[must_use]
     pub fn children(&self) -> &[Self] {
         match self {
@@ -117,7 +117,7 @@ impl Condition {
         }
     }
 
-    /// Folds over the condition and all its operands; an operator comes before its operands.
+    /// Folds a function over the condition and all its operands. An operator comes before its operands.
     pub fn fold<'c, T>(&'c self, first: T, join: &mut impl FnMut(T, &'c Self) -> T) -> T {
         let own = join(first, self);
         self.children().iter().fold(own, |folded, operand| operand.fold(folded, join))
@@ -128,7 +128,8 @@ impl Condition {
         is_so(self) || self.children().iter().any(|operand| operand.any(is_so))
     }
 
-    /// Replaces the condition and all its operands; operands come before their operator.
+    /// Replaces the condition and all its operands with the results of `replace`. Operands are replaced before their
+    /// operator.
     #[must_use]
     pub fn map(self, replace: &impl Fn(Self) -> Self) -> Self {
         let all = |operands: Vec<Self>| operands.into_iter().map(|operand| operand.map(replace)).collect();
@@ -153,19 +154,20 @@ impl Condition {
         }
     }
 
-    /// Returns the condition of `stuck T`: its quark has fired, and `T` has passed since its scope was entered.
+    /// Returns the condition of `stuck T`. It fires when its quark has fired and the time `T` has passed since its
+    /// scope was entered.
     pub(super) fn stuck(quark: QuarkId, nanos: u64) -> Self {
         Self::And(vec![Self::Quark(quark), Self::Wait { nanos, quark }])
     }
 
-    /// Returns the condition of `rendezvous R`: its quark has fired, and its scope was entered in an earlier
-    /// turn.
+    /// Returns the condition of `rendezvous R`. It fires when its quark has fired and its scope was entered in an
+    /// earlier turn.
     pub(super) fn later(quark: QuarkId) -> Self {
         Self::stuck(quark, 1)
     }
 
-    /// Returns the quark and the nanoseconds of a condition `stuck T` or `rendezvous R`, which consists of that
-    /// quark and a timer; `None` for any other condition.
+    /// Returns the quark and the nanoseconds of a condition `stuck T` or `rendezvous R`, which consists of a quark and
+    /// a timer; `None` for any other condition.
     #[must_use]
     pub fn lasting(&self) -> Option<(QuarkId, u64)> {
         let Self::And(operands) = self else { return None };
@@ -187,13 +189,13 @@ impl Condition {
         self.any(&|part| part.lasting().is_some())
     }
 
-    /// Returns `true` if the condition depends on the path driven since its scope was entered.
+    /// Returns `true` if the condition depends on the path that was driven since its scope was entered.
     #[must_use]
     pub fn drives(&self) -> bool {
         self.any(&|part| matches!(part, Self::Driven { .. }))
     }
 
-    /// Visits every RISING in the condition: the number of its memory, and its operand.
+    /// Calls `visit` for every RISING in the condition, with the index of its memory and its operand.
     pub fn each_rising(&self, visit: &mut impl FnMut(u32, &Self)) {
         self.fold((), &mut |(), part| {
             if let Self::Rising { memory, operand } = part {
@@ -202,7 +204,7 @@ impl Condition {
         });
     }
 
-    /// Visits every quark in the condition, timers excluded.
+    /// Calls `visit` for every quark in the condition except the quarks of timers.
     pub fn each_quark(&self, visit: &mut impl FnMut(QuarkId)) {
         self.fold((), &mut |(), part| {
             if let Self::Quark(id) = part {

@@ -1,5 +1,5 @@
-//! Collects the plans of a file by name, determines the references between them and the plans to run, and checks that
-//! no plan contains itself.
+//! Collects the plans of a file by name, and determines the references between them and the plans that can be run.
+//! Checks that no plan contains itself.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -9,7 +9,7 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::Files;
 use crate::syntax::tree::{self, Call, Element, Primary};
 
-/// The plans of a file and of the files that it uses.
+/// The plans of a file, and of the files that it uses.
 #[derive(Debug)]
 pub(super) struct Definitions<'a> {
     /// The plans; the plans of the file itself come first, in order.
@@ -19,22 +19,22 @@ pub(super) struct Definitions<'a> {
     by_name: BTreeMap<&'a str, usize>,
     /// For each plan, the plans to which it refers.
     refers: Vec<BTreeMap<usize, PlanUses>>,
-    /// Plans that are too large, or refer to a plan that is too large. Only the first is reported, not the
-    /// plans that contain it.
+    /// Plans that are too large, and plans that refer to such a plan. Only the plan that is too large by itself is
+    /// reported, not the plans that contain it.
     too_large: BTreeSet<usize>,
-    /// Number of plans of the file itself, without the plans of used files.
+    /// Number of plans in the file itself, without the plans of used files.
     own: usize,
-    /// `true` if a used file is missing that may contain more plans.
+    /// `true` if a used file that may contain more plans is missing.
     pub(super) is_incomplete: bool,
     /// Size of the files as written.
     written: Size,
-    /// Length, in bytes, of the longest argument given to a plan.
+    /// Length, in bytes, of the longest argument that is passed to a plan.
     longest: u64,
     /// Bounds on the sizes of plans.
     bounds: Bounds,
 }
 
-/// References in one plan to one other plan.
+/// References in one plan to another plan.
 #[derive(Debug, Clone, Copy)]
 struct PlanUses {
     first: Span,
@@ -94,7 +94,7 @@ impl<'a> Definitions<'a> {
         (definitions, found)
     }
 
-    /// Returns the plan of this name; `None` if there is none.
+    /// Returns the plan with this name; `None` if there is no such plan.
     pub(super) fn get(&self, name: &str) -> Option<&'a tree::Plan<'a>> {
         self.by_name.get(name).and_then(|index| self.plans.get(*index)).copied()
     }
@@ -108,12 +108,13 @@ impl<'a> Definitions<'a> {
         roots.into_iter().filter_map(|index| self.plans.get(index).copied()).collect()
     }
 
-    /// Returns `true` if a plan, given by its index, uses no other plan.
+    /// Returns `true` if the plan with this index uses no other plan.
     pub(super) fn stands_alone(&self, plan: usize) -> bool {
         self.refers.get(plan).is_some_and(BTreeMap::is_empty)
     }
 
-    /// Measures the plans, each after all plans to which it refers. Plans that remain contain themselves.
+    /// Computes the sizes of all plans. A plan is measured after all plans to which it refers; plans that cannot be
+    /// measured contain themselves.
     fn measure(&mut self, found: &mut Vec<Diagnostic>) {
         let mut waits: Vec<usize> = self.refers.iter().map(BTreeMap::len).collect();
         let mut referred_by = vec![Vec::new(); self.plans.len()];
@@ -163,7 +164,7 @@ impl<'a> Definitions<'a> {
         }
     }
 
-    /// Reports a plan that exceeds a limit, with the plan it uses that contributes most.
+    /// Reports a plan that exceeds a limit. The report names the used plan that contributes most to the size.
     fn explosion(&self, index: usize, excess: &Excess, sizes: &[Size]) -> Diagnostic {
         let Excess { unit, limit, .. } = excess;
         let plan = self.plans[index];
@@ -226,7 +227,7 @@ impl<'a> Definitions<'a> {
     }
 }
 
-/// Returns the places in a plan that refer to other plans, each with the index of the other plan.
+/// Returns the references in a plan to other plans, each with the index of the other plan.
 fn calls<'a>(plan: &tree::Plan<'a>, by_name: &BTreeMap<&str, usize>) -> Vec<(usize, &'a Call<'a>)> {
     fn visit<'a>(elements: &[Element<'a>], refer: &mut impl FnMut(&'a Call<'a>)) {
         for element in elements {
@@ -245,7 +246,7 @@ fn calls<'a>(plan: &tree::Plan<'a>, by_name: &BTreeMap<&str, usize>) -> Vec<(usi
     calls
 }
 
-/// Groups calls by the plan to which they refer, which is given by its index.
+/// Groups calls by the plan to which they refer; the keys are indices of plans.
 fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, PlanUses> {
     let mut references = BTreeMap::new();
     for (index, call) in calls {
@@ -254,8 +255,8 @@ fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, PlanUses> {
     references
 }
 
-/// Proposes a plan's name for a word: `Stop` for `stop`, and `StopPlan` for a word that already begins with a
-/// capital.
+/// Proposes a plan name that is similar to a word: `Stop` for `stop`, and `StopPlan` for a word that already begins
+/// with a capital.
 fn plan_like(name: &str) -> String {
     let mut letters = name.chars();
     match letters.next() {

@@ -1,5 +1,5 @@
-//! Determines families of interrupts whose values depend on each other: a signal has only one value, and an interrupt
-//! that its alphabet declares `exclusive` fires for at most one value of its arguments.
+//! Determines families of interrupts whose values depend on each other. A signal has only one value, and an interrupt
+//! that the alphabet declares as `exclusive` fires for at most one value of its arguments.
 
 use super::{Compared, Comparison, Operator, Quark, QuarkId, Value};
 use crate::alphabet::{ParameterKind, family_to_si};
@@ -7,13 +7,14 @@ use crate::alphabet::{ParameterKind, family_to_si};
 /// A family of interrupt quarks that depend on the same quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Family<'q> {
-    /// Uses of an exclusive interrupt: its name, and the index of its declaration among the declarations of this name.
+    /// Uses of an exclusive interrupt. Contains the interrupt's name, and the index of its declaration among the
+    /// declarations with this name.
     Exclusive(&'q str, usize),
     /// Comparisons of this signal with a value.
     Signal(QuarkId),
 }
 
-/// Returns the family of a quark; `None` if the quark's values are independent.
+/// Returns the family of a quark; `None` if the quark does not depend on other quarks.
 pub(crate) fn family(quark: &Quark) -> Option<Family<'_>> {
     match &quark.comparison {
         // Angles wrap around, so comparisons of angles have no family.
@@ -22,8 +23,8 @@ pub(crate) fn family(quark: &Quark) -> Option<Family<'_>> {
     }
 }
 
-/// Returns the value with which a signal is compared, and the tolerance, both in SI units; `None` for an angle, and for
-/// a comparison with another signal.
+/// Returns the value with which a signal is compared, and the tolerance, both in SI units. Returns `None` for an angle,
+/// and for a comparison with another signal.
 fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
     let si = |value: &Value| match value {
         Value::Quantity { kind: ParameterKind::Angle, .. } => None,
@@ -36,17 +37,17 @@ fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
     }
 }
 
-/// Values that an analysis assumes for a signal in a turn.
+/// Assumption of an analysis about the value of a signal in a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Readings {
-    /// A number or no value. Without a value, every comparison is false.
+    /// The signal has a number or no value. Without a value, every comparison is false.
     Any,
-    /// A number, as most users of a signal expect.
+    /// The signal has a number, as most users expect.
     Numbers,
 }
 
-/// Returns the values that the quarks of one family can have in one turn: a list for each possibility, in the
-/// order of the quarks.
+/// Returns the combinations of values that the quarks of one family can have in one turn. Each combination is a list in
+/// the order of the quarks.
 pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>, readings: Readings) -> Vec<Vec<bool>> {
     let quarks: Vec<&Quark> = quarks.collect();
     let are_numbers = readings == Readings::Numbers && !quarks.iter().any(|quark| quark.exclusive);
@@ -63,8 +64,8 @@ pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>, readings: Rea
     all
 }
 
-/// Returns values of a signal that cover every result of its comparisons: all limits, and one value between any
-/// two limits.
+/// Returns values of a signal that cover all results of the comparisons: all limits, and one value between each two
+/// neighbouring limits.
 fn values(quarks: &[&Quark]) -> Vec<f64> {
     let compared = quarks.iter().filter_map(|quark| threshold(quark.comparison.as_ref()?));
     let ends = compared.flat_map(|(value, tolerance)| [value - tolerance, value, value + tolerance]);
@@ -78,7 +79,7 @@ fn values(quarks: &[&Quark]) -> Vec<f64> {
     ends
 }
 
-/// Returns `true` if a comparison holds for this value of its signal.
+/// Returns `true` if a comparison is true for this value of its signal.
 fn holds(quark: &Quark, signal: f64) -> bool {
     let Some(comparison) = &quark.comparison else { return false };
     let Some((value, tolerance)) = threshold(comparison) else { return false };

@@ -1,18 +1,18 @@
 //! Prints a resolved plan in the paper's formal notation (Definitions 1 and 2): `((u1, ξ1)(u2, ξ2), ξ, T)^n`.
 //!
-//! The output is valid MDLe: the outermost scope keeps its braces and its name, since a file consists of such plans.
+//! The output is valid MDLe. The outermost scope keeps its braces and its name, because a file consists of such plans.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::angle::{HERE, frame_text};
 use super::{Atom, Interrupt, Mark, Node, Plan, Scope};
 
-/// Maximum length of a line that can be broken.
+/// Maximum length of a line; longer lines are broken where possible.
 const WIDTH: usize = 100;
 
 impl Plan {
-    /// Returns the plan in formal notation. A used plan whose labels `after` reads becomes a separate plan,
-    /// since `after` reads only labels of the plan that contains it.
+    /// Returns the plan in formal notation. A used plan with labels that `after` reads becomes a separate plan, because
+    /// `after` can read only the labels of its own plan.
     #[must_use]
     pub fn formal(&self) -> String {
         let quarks = self.quarks.iter().map(|quark| quark.name.clone());
@@ -25,16 +25,16 @@ impl Plan {
 
 struct FormalWriter<'p> {
     plan: &'p Plan,
-    /// Names that a further plan in the output cannot have.
+    /// Names that are not available for further plans in the output.
     taken: BTreeSet<String>,
-    /// Last number used in the names of plans that have the same base name.
+    /// For each base name, the last number that was appended to it to form a plan name.
     numbers: BTreeMap<String, usize>,
-    /// Texts of the plans, the main one first.
+    /// Texts of the plans; the main plan comes first.
     definitions: Vec<String>,
 }
 
 impl<'p> FormalWriter<'p> {
-    /// Writes a plan under this name.
+    /// Writes a plan with the name `name`.
     fn definition(&mut self, name: String, scope: &'p Scope) {
         let number = self.definitions.len();
         self.definitions.push(String::new());
@@ -94,7 +94,7 @@ impl<'p> FormalWriter<'p> {
         around(self.sequence(&scope.body), &format!("{here}("), &format!(", {})", interrupt(&scope.interrupt)))
     }
 
-    /// Returns a name that no quark and no plan in the output has: `name`, or `name` with a number.
+    /// Returns a name that neither a quark nor a plan in the output has: either `name`, or `name` with a number.
     fn distinct(&mut self, name: &str) -> String {
         let number = self.numbers.entry(name.to_owned()).or_insert(1);
         let mut distinct = name.to_owned();
@@ -106,7 +106,7 @@ impl<'p> FormalWriter<'p> {
     }
 }
 
-/// Writes `ξ`, or `ξ, T` if the last operand is a timer.
+/// Returns `ξ`, or `ξ, T` if the last operand is a timer.
 fn interrupt(interrupt: &Interrupt) -> String {
     let text = in_parentheses(interrupt);
     let (condition, time) = match text.strip_prefix("wait ") {
@@ -124,13 +124,13 @@ fn interrupt(interrupt: &Interrupt) -> String {
     }
 }
 
-/// Returns the text of the condition with nested ORs as written, since `after` refers to the operands of the
-/// outermost OR.
+/// Returns the text of the condition. Nested ORs appear in it as they were written, because `after` refers to the
+/// operands of the outermost OR.
 fn in_parentheses(interrupt: &Interrupt) -> &str {
     interrupt.nested.as_deref().unwrap_or(&interrupt.text)
 }
 
-/// Encloses lines in brackets, on a single line if there is room.
+/// Encloses lines in brackets. If there is room, the result is a single line.
 fn around(lines: Vec<String>, open: &str, close: &str) -> Vec<String> {
     let length: usize = lines.iter().map(|line| line.chars().count()).sum();
     if length + open.len() + close.len() <= WIDTH && lines.iter().all(|line| !line.starts_with(' ')) {
@@ -140,8 +140,8 @@ fn around(lines: Vec<String>, open: &str, close: &str) -> Vec<String> {
     [open.to_owned()].into_iter().chain(inside).chain([close.to_owned()]).collect()
 }
 
-/// Joins elements, with a space where two would otherwise be read as one: a parenthesis directly after a name
-/// holds its arguments.
+/// Joins elements. Inserts a space where two elements would otherwise be read as one, because a parenthesis directly
+/// after a name contains its arguments.
 fn joined(elements: &[String]) -> String {
     let is_of_a_name = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || !letter.is_ascii();
     let mut joined = String::new();

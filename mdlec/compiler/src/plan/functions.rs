@@ -1,7 +1,7 @@
-//! Decides which interrupts are the same function in every place (paper, Definition 4;
-//! docs/src/reference/semantics.md, 7.2 and 7.3).
+//! Decides which interrupts are the same function in every scope (paper, Definition 4; docs/src/reference/semantics.md,
+//! 7.2 and 7.3).
 //!
-//! Whole interrupts are compared, by their normal form: AND and OR flattened, sorted and deduplicated, double NOT
+//! Whole interrupts are compared in a normal form: AND and OR are flattened, sorted and deduplicated, and double NOT is
 //! removed.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,11 +12,11 @@ use super::{Condition, Quark, QuarkId, RecordId};
 #[derive(Debug)]
 pub struct Functions<'q> {
     quarks: &'q [Quark],
-    /// For each quark, the first quark that is the same function.
+    /// For each quark, the first quark that has the same name, signature, arguments and comparison.
     same: Vec<QuarkId>,
 }
 
-/// An interrupt as a function: equal functions are the same interrupt (Definition 4, Eq. 3).
+/// An interrupt as a function. Interrupts with equal functions are the same interrupt (Definition 4, Eq. 3).
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Function(Normal);
 
@@ -32,7 +32,7 @@ enum Normal {
     After(RecordId, u32),
 }
 
-/// Returns, for each quark, the first quark that is the same function.
+/// Returns, for each quark, the first quark in `quarks` with the same name, signature, arguments and comparison.
 fn same_functions(quarks: &[Quark]) -> Vec<QuarkId> {
     let mut first = BTreeMap::new();
     let ids = quarks.iter().zip((0..).map(QuarkId));
@@ -47,8 +47,8 @@ impl<'q> Functions<'q> {
         Self { quarks, same: same_functions(quarks) }
     }
 
-    /// Returns the function of a condition; `None` if the condition never fires, or if it is a different function in
-    /// each place.
+    /// Returns the function of a condition; `None` if the condition never fires, or if its function differs from scope
+    /// to scope.
     #[must_use]
     pub fn function(&self, condition: &Condition) -> Option<Function> {
         if !self.can_be_repeated(condition, false) {
@@ -58,7 +58,7 @@ impl<'q> Functions<'q> {
         (normal != Normal::Null).then_some(Function(normal))
     }
 
-    /// Returns `true` if the condition is the same function in every place.
+    /// Returns `true` if the condition is the same function in every scope.
     fn can_be_repeated(&self, condition: &Condition, under_not: bool) -> bool {
         match condition {
             Condition::Null => true,
@@ -120,7 +120,7 @@ impl<'q> Functions<'q> {
     }
 }
 
-/// Joins operands with `join`; a set with one operand becomes that operand.
+/// Joins operands with `join`. A set with only one operand becomes this operand.
 fn single(mut operands: BTreeSet<Normal>, join: impl Fn(BTreeSet<Normal>) -> Normal) -> Normal {
     match operands.pop_first() {
         Some(only) if operands.is_empty() => only,

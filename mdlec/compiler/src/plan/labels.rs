@@ -13,12 +13,12 @@ use crate::syntax::tree::Name;
 pub(super) struct Labels {
     record: RecordId,
     labels: BTreeMap<String, LabelCauses>,
-    /// Facts that `after` conditions read, by label and cause. Each has its number and the place of the first condition
-    /// that reads it.
+    /// Facts that `after` conditions read, by label and cause. Each entry contains the number of the fact, and the span
+    /// of the first condition that reads it.
     asked: BTreeMap<(String, Option<String>), AfterLabel>,
 }
 
-/// A label with the causes that can end its element.
+/// A label, with the causes that can end its element.
 #[derive(Debug, Clone)]
 struct LabelCauses {
     span: Span,
@@ -30,12 +30,12 @@ struct LabelCauses {
 /// Causes that can end an element.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum EndCauses {
-    /// The element ends when one of these operands of its interrupt fires.
+    /// The element ends when one of the operands of its interrupt fires; contains the texts of the operands.
     Operands(Vec<String>),
-    /// The element ends with its last element, since it has no interrupt of its own.
+    /// The element ends together with its last element, because it has no interrupt of its own.
     WithItsLast,
-    /// The causes are unknown, because the element uses a plan by name that is not copied yet, or because two elements
-    /// have the label.
+    /// The causes are unknown, because the element uses a plan by name that has not been copied yet, or because two
+    /// elements have the same label.
     Unknown,
 }
 
@@ -47,12 +47,12 @@ struct AfterLabel {
 }
 
 impl Labels {
-    /// Returns the labels of a new use of a definition; `record` is the record of this use.
+    /// Creates the labels of a new use of a definition; `record` is the record of this use.
     pub(super) fn new(record: RecordId) -> Self {
         Self { record, labels: BTreeMap::new(), asked: BTreeMap::new() }
     }
 
-    /// Records a label; reports the label if it was used before.
+    /// Records a label. Reports an error if the label was used before.
     pub(super) fn add(&mut self, label: Name<'_>, found: &mut Vec<Diagnostic>) {
         if let Some(first) = self.labels.get_mut(label.node) {
             // It is unknown which of the elements `after` means.
@@ -71,14 +71,14 @@ impl Labels {
         );
     }
 
-    /// Sets the causes that can end the element of a label.
+    /// Sets the causes that can end the element with the label `label`.
     pub(super) fn ends(&mut self, label: &str, ends: EndCauses) {
         if let Some(label) = self.labels.get_mut(label).filter(|label| !label.is_ambiguous) {
             label.ends = ends;
         }
     }
 
-    /// Returns a mark for the node with which the element of a label ends.
+    /// Returns a mark for the node that ends together with the element of a label.
     pub(super) fn mark(&self, label: &str) -> Mark {
         Mark { record: self.record, label: label.to_owned(), facts: Vec::new() }
     }
@@ -92,8 +92,8 @@ impl Labels {
         (self.record, asked.number)
     }
 
-    /// Completes the use of a definition, whose outermost scope is `scope`: adds to the marks the facts that `after`
-    /// reads, or removes the marks if `after` reads no label of this use.
+    /// Completes the use of a definition; `scope` is its outermost scope. Adds the facts that `after` reads to the
+    /// marks. If `after` reads no label of this use, removes the marks.
     pub(super) fn finish(self, scope: &mut Scope, found: &mut Vec<Diagnostic>) {
         let mut facts: BTreeMap<&str, Vec<Fact>> = BTreeMap::new();
         for ((label, cause), asked) in &self.asked {
@@ -118,7 +118,7 @@ impl Labels {
         }
     }
 
-    /// Returns the operand that must be the cause; `None` if any cause counts.
+    /// Returns the operand that must be the cause of the end; `None` if any cause is accepted.
     fn operand(&self, label: &str, cause: Option<&str>, asked: AfterLabel) -> Result<Option<u32>, Box<Diagnostic>> {
         let Some(known) = self.labels.get(label) else { return Err(self.unknown(label, asked.label).into()) };
         let (Some(cause), Some(span)) = (cause, asked.cause) else { return Ok(None) };
@@ -165,7 +165,7 @@ impl Labels {
     }
 }
 
-/// Adds help about the right place of a label to a report, if the label is the name of a behavior in this use.
+/// Adds help about the right place for a label to a diagnostic, if the label is the name of a behavior in this use.
 fn for_behavior(found: Diagnostic, label: &str, scope: &Scope) -> Diagnostic {
     let is_behavior = |node: &Node| matches!(node, Node::Scope(inner) if inner.name == label);
     if found.code != Code::E0201 || !scope.body.iter().any(is_behavior) {
@@ -180,14 +180,14 @@ fn for_behavior(found: Diagnostic, label: &str, scope: &Scope) -> Diagnostic {
     ))
 }
 
-/// Writes `after s1 bumper`, with parentheses if the operand is more than a quark.
+/// Returns a text such as `after s1 bumper`, with parentheses if the operand is more than a quark.
 fn cause_of(label: &str, operand: &str) -> String {
     let is_more =
         [" OR ", " AND ", "NOT ", "RISING ", "after ", "<", ">", "=="].iter().any(|word| operand.contains(word));
     if is_more { format!("`after {label} ({operand})`") } else { format!("`after {label} {operand}`") }
 }
 
-/// Visits the marks of all nodes.
+/// Calls `each` with the marks of each node.
 fn visit(body: &mut [Node], each: &mut impl FnMut(&mut Vec<Mark>)) {
     for node in body {
         each(node.marks_mut());

@@ -1,7 +1,7 @@
 //! Resolved plans: names, arguments and units are resolved, and plans used by name are copied in (paper, Definition 2).
 //!
-//! Later stages refer to a quark by its id, and not by its text. An argument has its exact decimal value and its unit
-//! family.
+//! Later stages refer to a quark by its id instead of its text. Arguments have their exact decimal values and their
+//! unit families.
 
 mod angle;
 mod arguments;
@@ -51,7 +51,7 @@ use crate::diagnostic::Span;
 pub struct Plan {
     /// The outermost scope, with the plan's name.
     pub root: Scope,
-    /// Every quark with its arguments, once each, in order of first appearance.
+    /// All quarks with their arguments, in order of first appearance; each quark is listed once.
     pub quarks: Vec<Quark>,
 }
 
@@ -69,7 +69,7 @@ impl Plan {
     }
 }
 
-/// Index of a quark with its arguments in [`Plan::quarks`].
+/// Index in [`Plan::quarks`] of a quark with its arguments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct QuarkId(pub u32);
 
@@ -78,15 +78,15 @@ pub struct QuarkId(pub u32);
 pub struct Quark {
     /// Name of the quark in the alphabet; for a comparison, the operator.
     pub name: String,
-    /// Index of the quark's declaration among the declarations of this name, in the alphabet's order.
+    /// Index of the quark's declaration among the declarations with the same name, in the order of the alphabet.
     pub overload: usize,
     /// Arguments of the quark, including defaults.
     pub args: Vec<Value>,
     /// `true` for a law that can complete by itself.
     pub completes: bool,
-    /// `true` if the quark has memory, so that it is never the same function in two scopes.
+    /// `true` if the quark has a memory; it is then never the same function in two scopes.
     pub remembers: bool,
-    /// `true` for an interrupt that fires for at most one value of its arguments in a turn.
+    /// `true` for an interrupt that fires in one turn for at most one value of its arguments.
     pub exclusive: bool,
     /// The parts of a comparison of signals; `None` for any other quark.
     pub comparison: Option<Comparison>,
@@ -94,18 +94,18 @@ pub struct Quark {
     pub text: String,
 }
 
-/// A comparison of a signal: an interrupt quark that fires while the comparison holds.
+/// A comparison of a signal: an interrupt quark that fires while the comparison is true.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Comparison {
     /// Signal on the left-hand side.
     pub signal: QuarkId,
-    /// Unit of the signal, in which texts show values.
+    /// Unit of the signal, which is also the unit of values in texts.
     pub unit: Unit,
     /// Operator of the comparison.
     pub operator: Operator,
     /// Right-hand side of the comparison.
     pub with: Compared,
-    /// Maximum difference between values that count as equal.
+    /// Maximum difference between two values that are treated as equal.
     pub tolerance: Value,
 }
 
@@ -125,14 +125,14 @@ pub enum Value {
     Quantity {
         /// Kind of the quantity.
         kind: ParameterKind,
-        /// Exact value in the unit of the family.
+        /// Exact value in the unit of its family.
         exact: Decimal,
-        /// Unit family of the value: degrees and radians are two families. Empty for a number without a unit.
+        /// Unit family of the value; empty for a number without a unit. Degrees and radians are different families.
         family: &'static str,
     },
     /// The value `inf` of a time or a count.
     Infinity(ParameterKind),
-    /// Bits, in the order in which they are written, as in `atIsection 0100`.
+    /// Bits in the order of the text, as in `atIsection 0100`.
     Bits(Vec<bool>),
     /// A whole number.
     Integer(i64),
@@ -143,8 +143,8 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the value of a quantity in SI units, in which signals are compared; `f64::MAX` for `inf`, and 0 for a
-    /// value of any other kind.
+    /// Returns the value of a quantity in SI units, which are used to compare signals; `f64::MAX` for `inf`, and 0 for
+    /// a value of any other kind.
     #[must_use]
     pub fn in_si(&self) -> f64 {
         match self {
@@ -155,7 +155,7 @@ impl Value {
     }
 }
 
-/// A closed string: a sequence with an interrupt of its own.
+/// A closed string: a sequence that has its own interrupt.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scope {
     /// Name of the scope; empty in formal notation.
@@ -164,12 +164,12 @@ pub struct Scope {
     pub interrupt: Interrupt,
     /// Elements of the scope, in order; never empty.
     pub body: Vec<Node>,
-    /// `true` if the scope's frame is the robot's heading at the moment of entry: `FRAME here`.
+    /// `true` if the scope has `FRAME here`: its frame is then the robot's heading at the time of entry.
     pub here: bool,
-    /// Record of the labelled elements that ended last, for the outermost scope of a plan that uses `after`; `None` for
-    /// any other scope.
+    /// Record of the labelled elements that ended last, if this is the outermost scope of a plan that uses `after`;
+    /// `None` for any other scope.
     pub record: Option<Record>,
-    /// Labels of the elements that end with the scope.
+    /// Labels of the elements that end together with the scope.
     pub marks: Vec<Mark>,
     /// Span of the scope's definition.
     pub span: Span,
@@ -193,32 +193,32 @@ pub struct Atom {
     pub law: QuarkId,
     /// Interrupt of the atom.
     pub interrupt: Interrupt,
-    /// Angle by which the atom's frame is turned, in radians, counter-clockwise; relative to the innermost `FRAME
-    /// here`, if there is one.
+    /// Angle, in radians, by which the atom's frame is turned counter-clockwise. It is relative to the innermost
+    /// enclosing `FRAME here`; if there is none, it is relative to the plan's frame.
     pub frame: f64,
-    /// `true` if the atom's frame is the robot's heading at the moment of entry: `FRAME here`.
+    /// `true` if the atom has `FRAME here`: its frame is then the robot's heading at the time of entry.
     pub here: bool,
-    /// Labels of the elements that end with the atom.
+    /// Labels of the elements that end together with the atom.
     pub marks: Vec<Mark>,
     /// Span of the atom.
     pub span: Span,
 }
 
-/// A loop: a sequence with its number of passes.
+/// A loop: a sequence, and the number of its passes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loop {
     /// Number of passes, at least 1; `None` for an endless loop.
     pub times: Option<u64>,
     /// Elements of a pass, in order; never empty.
     pub body: Vec<Node>,
-    /// Labels of the elements that end with the loop's last pass.
+    /// Labels of the elements that end together with the loop's last pass.
     pub marks: Vec<Mark>,
     /// Span of the loop.
     pub span: Span,
 }
 
 impl Node {
-    /// Returns the labels of the elements that end with the node.
+    /// Returns the labels of the elements that end together with the node, so that they can be changed.
     pub(crate) fn marks_mut(&mut self) -> &mut Vec<Mark> {
         match self {
             Self::Atom(atom) => &mut atom.marks,
@@ -228,23 +228,23 @@ impl Node {
     }
 }
 
-/// Identifier of one use of a plan's definition; `after` reads the record of this use.
+/// Identifier of a record, which belongs to one use of a plan's definition; `after` reads it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RecordId(pub u32);
 
 /// Record of the labelled elements that ended last, in one use of a definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Record {
-    /// Identifier of the use of the definition.
+    /// Identifier of the record.
     pub id: RecordId,
     /// Number of different facts that `after` conditions read from the record.
     pub facts: u32,
 }
 
-/// A label of an element that ends with a node.
+/// A label of an element that ends together with a node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mark {
-    /// Use of the definition that contains the label.
+    /// Record of the use of the definition that contains the label.
     pub record: RecordId,
     /// Text of the label.
     pub label: String,
@@ -255,15 +255,15 @@ pub struct Mark {
 /// A fact that an `after` condition reads from a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fact {
-    /// Number of the fact in the record.
+    /// Index of the fact in the record.
     pub number: u32,
-    /// Operand of the node's interrupt that must be the cause; `None` if any cause counts.
+    /// Index of the operand, in the node's interrupt, that must be the cause; `None` if any cause is accepted.
     pub operand: Option<u32>,
 }
 
 impl Fact {
-    /// Returns `true` if the fact holds once the node has ended by `operand` of its interrupt; `None` means that the
-    /// node ended by another cause.
+    /// Returns `true` if the fact is true after the node has ended by `operand` of its interrupt; `None` means another
+    /// cause.
     #[must_use]
     pub fn holds(&self, operand: Option<u32>) -> bool {
         self.operand.is_none() || self.operand == operand
@@ -275,23 +275,23 @@ impl Fact {
 pub struct Interrupt {
     /// Condition that fires the interrupt.
     pub condition: Condition,
-    /// Text of the condition, which is kept even if the condition was removed.
+    /// Text of the condition. It is kept even if the condition was removed.
     pub text: String,
-    /// Text of the condition with parentheses around each OR that is directly in another OR; `None` if there is no such
-    /// OR.
+    /// Text of the condition with parentheses around each OR that is an operand of another OR; `None` if there is no
+    /// such OR.
     pub nested: Option<Box<str>>,
-    /// Places of the operands, which are the [joined](Condition::joined) parts of the condition.
+    /// Positions of the operands, which are the [joined](Condition::joined) parts of the condition.
     pub operands: Box<[OperandPlace]>,
-    /// Number of memories that RISING needs in each entered scope.
+    /// Number of memories that the RISINGs of the condition need in each entered scope.
     pub memories: u32,
-    /// `true` if an outer scope repeats the interrupt, so that it was replaced by the null interrupt.
+    /// `true` if the interrupt was replaced by the null interrupt, because an outer scope repeats it.
     pub removed: bool,
-    /// Span of the interrupt; the span of the scope or atom if it has no interrupt.
+    /// Span of the interrupt; the span of the scope or atom if there is no interrupt.
     pub span: Span,
 }
 
 impl Interrupt {
-    /// Returns the interrupt of a scope at `scope` without a condition, which never fires.
+    /// Returns the interrupt of a scope without a condition, which never fires; `scope` is the span of the scope.
     #[must_use]
     pub fn none(scope: Span) -> Self {
         let operands = Box::default();
@@ -314,13 +314,12 @@ impl Interrupt {
     }
 }
 
-/// Place of an operand in the text of the plan.
+/// Position of an operand in the text of the plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OperandPlace {
     /// Span from the operand's first word to its last.
     pub span: Span,
-    /// Offsets at which the compared signals end, if the operand is a comparison, or a NOT or RISING of a
-    /// comparison.
+    /// Offsets of the ends of the compared signals, if the operand is a comparison, or a NOT or RISING of a comparison.
     pub signals: [Option<NonZeroU32>; 2],
     /// Text of the operand if it differs from the text of its condition, for example after a `wait inf` has
     /// become null. It is boxed because most operands have no such text.

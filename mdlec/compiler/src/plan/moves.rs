@@ -1,4 +1,5 @@
-//! Proposes laws of the paper or of this project for movements that are written with commands of other languages.
+//! Proposes laws for movements that a user has written with commands of other languages. The laws are from the paper or
+//! from this project.
 
 use crate::alphabet::{ParameterKind, Unit};
 use crate::syntax::tree::{Arg, Call, Number};

@@ -1,15 +1,15 @@
-//! Removes degeneracy (paper, Definition 4; docs/src/reference/semantics.md, 7.1): after this step no interrupt
-//! is repeated inside its scope.
+//! Removes degeneracy (paper, Definition 4; docs/src/reference/semantics.md, 7.1): after this step, no interrupt is
+//! repeated inside its scope.
 //!
-//! The outer interrupt is evaluated first and so always wins; replacing the inner interrupts by the null
-//! interrupt changes no trace.
+//! The outer interrupt is evaluated first, so it always wins. Replacing the inner interrupts by the null interrupt
+//! therefore changes no trace.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Atom, Condition, Function, Functions, Interrupt, Node, Plan, Quark, QuarkId, Scope};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// A plan without degeneracy; only [`remove_degeneracy`] constructs it.
+/// A plan without degeneracy. Only [`remove_degeneracy`] constructs this type.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nondegenerate(Plan);
 
@@ -20,15 +20,15 @@ impl Nondegenerate {
         &self.0
     }
 
-    /// Rewrites the outermost scope. Like the expansion of loops, the rewrite must not repeat an interrupt inside its
-    /// scope.
+    /// Rewrites the outermost scope. `rewrite` must not repeat an interrupt inside its scope; the expansion of loops,
+    /// for example, does not.
     #[must_use]
     pub(crate) fn map(&self, rewrite: impl FnOnce(&Scope) -> Scope) -> Self {
         Self(Plan { root: rewrite(&self.0.root), quarks: self.0.quarks.clone() })
     }
 }
 
-/// Replaces every repeated interrupt by the null interrupt, and returns a warning for each place in the text.
+/// Replaces all repeated interrupts by the null interrupt. Returns the plan, and a warning for each place in the text.
 #[must_use]
 pub fn remove_degeneracy(mut plan: Plan) -> (Nondegenerate, Vec<Diagnostic>) {
     let mut removal = Removal {
@@ -43,8 +43,8 @@ pub fn remove_degeneracy(mut plan: Plan) -> (Nondegenerate, Vec<Diagnostic>) {
     (Nondegenerate(plan), warnings)
 }
 
-/// State of the pass that removes degeneracy. `around` holds the interrupts of the enclosing scopes, each with the name
-/// of the scope and the span of the interrupt.
+/// State of the pass that removes degeneracy. `around` contains the interrupts of the enclosing scopes, each with the
+/// name of the scope and the span of the interrupt.
 struct Removal<'a> {
     functions: Functions<'a>,
     quarks: &'a [Quark],
@@ -78,7 +78,7 @@ impl Removal<'_> {
         }
     }
 
-    /// Replaces the interrupt by null and returns `None` if an enclosing scope has the same interrupt. Otherwise
+    /// If an enclosing scope has the same interrupt, replaces the interrupt by null and returns `None`. Otherwise,
     /// returns the function of the interrupt; `None` if the function cannot be repeated.
     fn interrupt(&mut self, interrupt: &mut Interrupt, law: Option<QuarkId>) -> Option<Function> {
         let function = self.functions.function(&interrupt.condition)?;

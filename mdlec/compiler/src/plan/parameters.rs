@@ -7,7 +7,7 @@ use crate::alphabet::{self, Alphabet, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Name};
 
-/// The names that a definition can use in addition to those of its alphabet.
+/// Names that a definition can use, in addition to the names in its alphabet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DefinitionNames<'n, 's> {
     /// Plans of the file.
@@ -20,8 +20,7 @@ pub(super) struct DefinitionNames<'n, 's> {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Parameters<'s> {
     known: BTreeMap<&'s str, Parameter<'s>>,
-    /// Parameters with an unknown type. The type has been reported, so uses of these parameters are not
-    /// reported.
+    /// Parameters whose type is unknown. This error has been reported, so uses of these parameters are not reported.
     untyped: BTreeSet<&'s str>,
 }
 
@@ -35,8 +34,8 @@ pub(super) struct Parameter<'s> {
 }
 
 impl Parameter<'_> {
-    /// Returns the unit of a number that is written without a unit: the paper's unit for this kind, which the quarks of
-    /// `mdle-atoms` use too; `None` if the kind has no unit.
+    /// Returns the unit that is assumed for a number without a unit. This is the paper's unit for the kind, which the
+    /// quarks of `mdle-atoms` also use; `None` if the kind has no unit.
     pub(super) fn unit(&self) -> Option<Unit> {
         if self.kind == ParameterKind::Speed {
             return Unit::from_name("cm/s");
@@ -47,7 +46,7 @@ impl Parameter<'_> {
         self.kind.base_unit()
     }
 
-    /// Reports that this parameter is used at `span`, where the kind `expected` is required.
+    /// Reports that this parameter is used at `span` although the kind `expected` is required there.
     pub(super) fn mismatch(&self, expected: ParameterKind, span: Span) -> Diagnostic {
         let (name, kind) = (self.name.node, self.kind.words());
         let message = format!("expected {}, found `{name}`, which is {kind}", expected.words());
@@ -76,29 +75,29 @@ impl<'s> Parameters<'s> {
         parameters
     }
 
-    /// Returns the number of the parameters that have a type.
+    /// Returns the number of parameters that have a type.
     pub(super) fn len(&self) -> usize {
         self.known.len()
     }
 
-    /// Sets the argument of the parameter of this name.
+    /// Sets the argument of the parameter `name`.
     pub(super) fn give(&mut self, name: &str, arg: Option<Arg<'s>>) {
         if let Some(parameter) = self.known.get_mut(name) {
             parameter.given = arg;
         }
     }
 
-    /// Returns the parameter of this name; `None` if there is none.
+    /// Returns the parameter `name`; `None` if there is no such parameter.
     pub(super) fn get(&self, name: &str) -> Option<&Parameter<'s>> {
         self.known.get(name)
     }
 
-    /// Returns `true` if the parameter of this name has an unknown type.
+    /// Returns `true` if the type of the parameter `name` is unknown.
     pub(super) fn is_untyped(&self, name: &str) -> bool {
         self.untyped.contains(name)
     }
 
-    /// Returns the parameter that an argument names; `None` if it names none.
+    /// Returns the parameter that an argument names; `None` if the argument does not name a parameter.
     pub(super) fn of(&self, arg: &Arg<'_>) -> Option<&Parameter<'s>> {
         match arg {
             Arg::Name(name) => self.get(name.node),
@@ -119,7 +118,7 @@ impl<'s> Parameters<'s> {
     }
 }
 
-/// Returns the kind for the name of a type, such as `bits[4]`; `None` if there is no such type.
+/// Returns the kind that a type name such as `bits[4]` denotes; `None` if there is no such type.
 fn kind_of(name: &str) -> Option<ParameterKind> {
     let length = name.strip_prefix("bits[").and_then(|rest| rest.strip_suffix(']'));
     match length {
@@ -163,7 +162,7 @@ fn unknown_type(name: Name<'_>, by_use: Option<ParameterKind>) -> Diagnostic {
     }
 }
 
-/// Reports a plan with parameters that gets no arguments; `why` is the reason.
+/// Reports a plan that has parameters but gets no arguments; `why` is the reason.
 pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
     let name = plan.name.node;
     let first = plan.params.first().map_or(plan.name.span, |param| param.name.span);
@@ -174,7 +173,7 @@ pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
         .help(format!("write a plan that uses it by name: `{{ Main {name}({}) }}`", params.join(", ")))
 }
 
-/// Reports a loop count `name` that is not a parameter of the type `count`.
+/// Reports a loop count `name` that is not a parameter with the type `count`.
 pub(super) fn no_count(name: Name<'_>, parameters: &Parameters<'_>) -> Diagnostic {
     if let Some(parameter) = parameters.get(name.node) {
         return parameter

@@ -6,8 +6,8 @@ use crate::alphabet::{Alphabet, Declaration, DeclarationKind, Origin, Param};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{self, Call};
 
-/// Returns the parameters of `plan` with the arguments of `call`. `around` contains the parameters of the definition in
-/// which the call is.
+/// Returns the parameters of `plan` with the arguments of `call`. `around` contains the parameters of the definition
+/// that contains the call.
 ///
 /// # Errors
 /// Fails if the number, the type or the unit of the arguments differs from the declaration.
@@ -39,8 +39,8 @@ pub(super) fn with_arguments<'s>(
     Ok(parameters)
 }
 
-/// Returns a declaration for a plan with parameters, as for a quark, so that its arguments are checked in the
-/// same way.
+/// Returns a declaration for a plan with parameters, in the form of a quark's declaration, so that arguments of plans
+/// and quarks are checked in the same way.
 fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaration {
     let param = |param: &tree::Param<'_>| {
         let parameter = parameters.get(param.name.node)?;

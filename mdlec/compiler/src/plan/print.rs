@@ -1,5 +1,4 @@
-//! Prints a resolved plan as MDLe text: plans used by name are copied in, and every argument is in its default
-//! unit.
+//! Prints a resolved plan as MDLe text. Plans used by name are copied in, and all arguments are in their default units.
 
 use std::fmt;
 
@@ -13,8 +12,8 @@ impl fmt::Display for Plan {
 }
 
 impl Plan {
-    /// Returns the text of the plan with the number of each atom after the atom. If the loops of the plan are expanded,
-    /// the numbers are those of the machine's states.
+    /// Returns the text of the plan, with the number of each atom after the atom. If the loops of the plan are
+    /// expanded, the numbers are the numbers of the machine's states.
     #[must_use]
     pub fn numbered(&self) -> String {
         self.printed(true)

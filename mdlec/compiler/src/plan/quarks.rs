@@ -1,5 +1,5 @@
-//! Resolves quarks by name: chooses the declaration for a call, checks that the robot has the quark, and gives equal
-//! calls the same id.
+//! Resolves quarks by name. Chooses the declaration for a call, checks that the robot has the quark, and assigns the
+//! same id to equal calls.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::alphabet::{Alphabet, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::Call;
 
-/// The quarks resolved so far.
+/// The quarks that have been resolved so far.
 #[derive(Debug)]
 pub(super) struct ResolvedQuarks<'a> {
     alphabet: &'a Alphabet,
@@ -87,7 +87,7 @@ impl<'a> ResolvedQuarks<'a> {
         })
     }
 
-    /// Returns the id of a quark, and adds the quark if it is new.
+    /// Returns the id of a quark. If the quark is new, adds it.
     pub(super) fn add(&mut self, quark: Quark) -> QuarkId {
         if let Some(id) = self.ids.get(&quark) {
             return *id;

@@ -1,4 +1,4 @@
-//! Resolves a tree to plans: resolves names, arguments and units, and copies each plan that is used by name.
+//! Resolves a tree to plans: resolves names, arguments and units, and copies in each plan that is used by name.
 
 mod misread;
 
@@ -17,10 +17,10 @@ use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
 use crate::syntax::Files;
 use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal, Frame, Number, Primary};
 
-/// Maximum angle of a FRAME, in its unit: far beyond a full circle, and small enough for exact sums.
+/// Maximum angle of a FRAME, in its unit. It is far beyond a full circle, and small enough for exact sums.
 const FRAME: f64 = 100_000.0;
 
-/// Returns the names of the plans of a file to which no other plan refers, without copying plans into each other.
+/// Returns the names of the plans of a file to which no other plan refers. Does not copy plans into each other.
 #[must_use]
 pub fn roots(files: &Files, alphabet: &Alphabet) -> Vec<String> {
     let (definitions, _) = Definitions::collect(files, alphabet, Bounds::FILES);
@@ -80,12 +80,12 @@ pub fn resolve(
     if has_errors(&found) { (Vec::new(), found) } else { (plans, found) }
 }
 
-/// Treatment of plans that are used by name.
+/// Treatment of a plan that is used by name.
 #[derive(Debug, Clone, Copy)]
 enum Uses {
-    /// Check that the plan exists.
+    /// Only check that the plan exists.
     Check,
-    /// Insert a copy. This is safe once all plans are known to be valid and no plan contains itself.
+    /// Insert a copy of the plan. This is safe once all plans are known to be valid and no plan contains itself.
     Copy,
 }
 
@@ -94,7 +94,7 @@ enum Uses {
 struct Framing {
     /// Sum of the angles by which the frame is turned, in radians, relative to the innermost `FRAME here`.
     turned: f64,
-    /// `true` if `FRAME here` is written before this element itself.
+    /// `true` if `FRAME here` is written directly before this element.
     here: bool,
 }
 
@@ -102,13 +102,13 @@ impl Framing {
     /// Frame of a plan that no other plan uses.
     const PLAN: Self = Self { turned: 0.0, here: false };
 
-    /// Returns the frame of the nested elements.
+    /// Returns the frame for the nested elements.
     fn inside(self) -> Self {
         Self { here: false, ..self }
     }
 }
 
-/// Wraps a sequence in a scope with a frame of its own; an empty sequence stays empty.
+/// Wraps a sequence in a scope that has its own frame; an empty sequence stays empty.
 fn framed(body: Vec<Node>, span: Span) -> Vec<Node> {
     if body.is_empty() {
         return body;
@@ -125,9 +125,9 @@ struct Resolver<'r, 'a> {
     parameters: Parameters<'a>,
     /// Labels of the definition that is being resolved.
     labels: Labels,
-    /// Number of definitions begun so far.
+    /// Number of definitions that have been begun so far.
     begun: u32,
-    /// Span of the element that follows the element being resolved, if there is one.
+    /// Span of the element that follows the current element; `None` if no element follows.
     next: Option<Span>,
     found: Vec<Diagnostic>,
 }
@@ -139,7 +139,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         Self { definitions, quarks, uses, parameters, labels, begun: 0, next: None, found: Vec::new() }
     }
 
-    /// Resolves a plan of the file, with labels and parameters of its own.
+    /// Resolves a plan of the file, with its own labels and parameters.
     fn plan(&mut self, plan: &tree::Plan<'a>, parameters: Parameters<'a>, frame: Framing) -> (Scope, EndCauses) {
         let labels = std::mem::replace(&mut self.labels, Labels::new(RecordId(self.begun)));
         self.begun = self.begun.saturating_add(1);
@@ -150,7 +150,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         (scope, ends)
     }
 
-    /// Resolves a behavior in place.
+    /// Resolves a behavior that is defined inside a string.
     fn behavior(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, EndCauses) {
         if !plan.params.is_empty() {
             self.found.push(parameters::missing(plan, "it is written in place"));
@@ -213,7 +213,8 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// Resolves the main part of an element. Each form has a function of its own, to save stack where plans use plans.
+    /// Resolves the main part of an element. Each form of element has its own function, which saves stack space when
+    /// plans use plans.
     fn primary(&mut self, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         match &element.primary {
             Primary::Atom(atom) => self.written(atom, element.span, frame, nodes),
@@ -226,7 +227,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// Resolves `(s)`: an open string, which `FRAME here` makes a scope.
+    /// Resolves `(s)`: an open string, which becomes a scope if it has `FRAME here`.
     fn string(&mut self, elements: &[Element<'a>], span: Span, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         if frame.here {
             nodes.extend(framed(self.sequence(elements, frame), span));
@@ -268,7 +269,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         ends
     }
 
-    /// Resolves `{ Behavior … }`, a scope.
+    /// Resolves a behavior `{ Behavior … }` inside a string to a scope.
     fn in_place(&mut self, plan: &tree::Plan<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let (scope, ends) = self.behavior(plan, frame);
         nodes.push(Node::Scope(scope));
@@ -298,8 +299,8 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// Resolves `(u, ξ, T)` or `(s, ξ, T)`: to an atom if the body is a single law, otherwise to a scope
-    /// without a name.
+    /// Resolves `(u, ξ, T)` or `(s, ξ, T)`. The result is an atom if the body is a single law, and a scope without a
+    /// name otherwise.
     fn formal(&mut self, formal: &Formal<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let (interrupt, ends) = self.timed(formal, span);
         match formal.body {
@@ -315,8 +316,8 @@ impl<'r, 'a> Resolver<'r, 'a> {
         ends
     }
 
-    /// Returns `true` if a name in the place of a law or a plan counts as a law: the alphabet has this law, or the
-    /// name has arguments and no plan has this name.
+    /// Returns `true` if a name that may be a law or a plan is treated as a law, because the alphabet has this law, or
+    /// because the name has arguments and no plan has this name.
     fn is_law(&self, call: &Call<'a>) -> bool {
         let mut declarations = self.quarks.alphabet().declarations_of(call.name);
         let is_bare = !call.args.is_empty() && self.definitions.get(call.name).is_none();
@@ -346,7 +347,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         self.interrupt(Some(&whole(ConditionNode::Or(&operands))), span)
     }
 
-    /// Returns the plan that `call` names, with its arguments; `None` if no copy is to be inserted.
+    /// Returns the plan that `call` names, with its arguments; `None` if no copy has to be inserted.
     fn reference(&mut self, call: &Call<'a>) -> Option<(&'r tree::Plan<'a>, Parameters<'a>)> {
         let Some(plan) = self.definitions.get(call.name) else {
             let unknown = self.unknown_plan(call);
@@ -366,7 +367,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// Resolves a loop count, which is at least one pass; `None` for an endless loop.
+    /// Resolves the number of passes of a loop, which is at least 1; returns `None` for an endless loop.
     fn count(&mut self, count: &Count) -> Option<u64> {
         let number = match count {
             Count::Infinity(_) => return None,

@@ -1,4 +1,4 @@
-//! Resolves conditions, that is, quarks joined by AND, OR and NOT, and writes their text
+//! Resolves conditions, which are quarks joined by AND, OR and NOT, and writes their text
 //! (docs/src/reference/semantics.md, 2.1; docs/src/reference/language.md, 7).
 
 use std::num::NonZeroU32;
@@ -21,9 +21,9 @@ pub(super) struct ConditionScope<'r, 'a, 'n> {
     pub(super) found: &'r mut Vec<Diagnostic>,
 }
 
-/// Resolves the condition of a scope at `scope`; returns the interrupt, and the text of each operand of its
-/// outermost OR. A scope without a condition gets the null interrupt. A part that cannot be resolved is
-/// reported and counts as null.
+/// Resolves the condition of a scope; `scope` is the span of the scope. Returns the interrupt, and the text of each
+/// operand of its outermost OR. A scope without a condition gets the null interrupt. A part that cannot be resolved is
+/// reported and treated as null.
 pub(super) fn interrupt(
     condition: Option<&tree::Condition>,
     scope: Span,
@@ -56,7 +56,7 @@ pub(super) fn interrupt(
     (Interrupt { condition, text, nested, operands: places, memories, removed: false, span: written.span }, operands)
 }
 
-/// Collects the places of the parts that AND and OR join.
+/// Collects the positions of the parts that AND and OR join.
 fn joined(written: &tree::Condition, places: &mut Vec<OperandPlace>) {
     match written.node {
         ConditionNode::Or(operands) | ConditionNode::And(operands) => {
@@ -71,7 +71,7 @@ fn joined(written: &tree::Condition, places: &mut Vec<OperandPlace>) {
     }
 }
 
-/// Returns the offsets in the text at which the compared signals of an operand end.
+/// Returns the offsets in the text at which the signals that an operand compares end.
 fn signals(operand: &tree::Condition) -> [Option<NonZeroU32>; 2] {
     match operand.node {
         ConditionNode::Comparison(Compared { left, right: Operand::Signal(right), .. }) => {
@@ -84,7 +84,7 @@ fn signals(operand: &tree::Condition) -> [Option<NonZeroU32>; 2] {
     }
 }
 
-/// Number of nanoseconds that represents `wait inf`; any other wait must be shorter.
+/// Number of nanoseconds that represents `wait inf`. Any other wait must be shorter.
 const FOR_EVER: u64 = u64::MAX;
 
 /// Replaces `wait inf` by the null interrupt. Called after the text has been written.
@@ -110,7 +110,7 @@ fn constant(condition: &Condition) -> Option<bool> {
 
 struct Resolving<'r, 'a, 'n> {
     around: ConditionScope<'r, 'a, 'n>,
-    /// Number of RISINGs in this condition so far.
+    /// Number of RISINGs in this condition that have been resolved so far.
     memories: u32,
 }
 
@@ -201,7 +201,7 @@ impl Resolving<'_, '_, '_> {
     }
 }
 
-/// Reports `after ahead by wait 5`, where a word is between a label and its cause.
+/// Reports a word between a label and its cause, as in `after ahead by wait 5`.
 fn by_word(cause: &tree::Condition, is_unknown: impl Fn(&Call) -> bool) -> Option<Diagnostic> {
     let ConditionNode::Call(call) = cause.node else { return None };
     let [Arg::Name(name), args @ ..] = call.args else { return None };
@@ -213,7 +213,7 @@ fn by_word(cause: &tree::Condition, is_unknown: impl Fn(&Call) -> bool) -> Optio
     is_word.then(|| diagnostic.fix("write {}", call.span, written(&inside)))
 }
 
-/// Precedence of operators, from the loosest to the tightest.
+/// Precedence of operators. The operator that binds least tightly comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Precedence {
     Or,
@@ -221,7 +221,7 @@ enum Precedence {
     Test,
 }
 
-/// Layout of an OR that is directly in another OR.
+/// Layout of an OR that is an operand of another OR.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Ors {
     /// The operands of the inner OR are written among the operands of the outer OR.

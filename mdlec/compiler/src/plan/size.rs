@@ -1,24 +1,24 @@
-//! Computes and limits the size that a plan will have once every plan used by name is copied in, before any
-//! copy is made.
+//! Computes and limits the size that a plan will have after all plans used by name have been copied in. This is done
+//! before any copy is made.
 //!
-//! Sizes multiply where plans use plans, so a short text may need more memory than any computer has. A file in which
-//! all elements are written out is never too large.
+//! If plans use plans, their sizes multiply, so a short text may need more memory than any computer has. A file in
+//! which all elements are written out is never too large.
 
 use std::collections::BTreeMap;
 
 use crate::diagnostic::Span;
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, Operand, Plan, Primary};
 
-/// Bounds on the size that a plan has once every plan used by name is copied in.
+/// Bounds on the size of a plan after all plans used by name have been copied in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bounds {
-    /// Maximum number of atoms, scopes and loops of a plan, without expansion of loops.
+    /// Maximum number of atoms, scopes and loops in a plan; loops are not expanded.
     pub brackets: u64,
-    /// Maximum number of operands of a plan's conditions.
+    /// Maximum total number of operands in all conditions of a plan.
     pub operands: u64,
     /// Maximum length, in bytes, of a plan's text as `--emit plan` prints it.
     pub text: u64,
-    /// `true` if a plan of any size is accepted that is not larger than its files as written.
+    /// `true` if a plan that is not larger than its files as written is always accepted, regardless of its size.
     pub is_written_free: bool,
 }
 
@@ -31,7 +31,7 @@ impl Bounds {
 /// Maximum nesting depth.
 pub(super) const DEPTH: u32 = 512;
 
-/// Additional bytes of printed text for each quark, atom or scope: defaults, units and brackets.
+/// Number of additional bytes of printed text for each quark, atom or scope, for defaults, units and brackets.
 const BESIDE: u64 = 16;
 
 /// Size of a plan or of a part of a plan.
@@ -54,14 +54,14 @@ pub(super) struct Excess {
 }
 
 impl Excess {
-    /// Returns the number in `size` to which this limit applies.
+    /// Returns the count in `size` that this limit restricts.
     pub(super) fn count(&self, size: &Size) -> u64 {
         (self.of)(size)
     }
 }
 
 impl Size {
-    /// Returns the first bound that this size exceeds; `written` is the size of the files as written.
+    /// Returns the first limit that this size exceeds; `written` is the size of the files as written.
     pub(super) fn excess(&self, written: &Self, bounds: &Bounds) -> Option<Excess> {
         let limits: [Excess; 3] = [
             Excess { of: |size| size.brackets, unit: "atoms, scopes and loops", limit: bounds.brackets },
@@ -72,7 +72,7 @@ impl Size {
         limits.into_iter().find(|excess| excess.count(self) > excess.limit.max(free(excess)))
     }
 
-    /// Returns the size of two parts in sequence.
+    /// Returns the total size of two parts, one after the other.
     pub(super) fn and(self, other: Self) -> Self {
         Self {
             brackets: self.brackets.saturating_add(other.brackets),
@@ -82,13 +82,13 @@ impl Size {
         }
     }
 
-    /// Returns the size of the part inside a scope or a loop.
+    /// Returns the size of a scope or a loop that contains this part.
     fn nested(self) -> Self {
         let inside = self.indented();
         Self { brackets: inside.brackets.saturating_add(1), ..inside }
     }
 
-    /// Returns the size of the part inside brackets, which indent each line.
+    /// Returns the size of this part inside brackets, which indent each line.
     fn indented(self) -> Self {
         let text = self.text.saturating_add(self.brackets.saturating_mul(2)).saturating_add(BESIDE);
         Self { text, depth: self.depth.saturating_add(1), ..self }
@@ -102,9 +102,9 @@ impl Size {
 /// Measures plans; used plans are measured before the plans that use them.
 pub(super) struct Measure<'m> {
     pub(super) by_name: &'m BTreeMap<&'m str, usize>,
-    /// Sizes of the plans measured so far.
+    /// Sizes of the plans that have been measured so far.
     pub(super) sizes: &'m [Size],
-    /// Length, in bytes, of the longest argument given to a plan, as an upper bound for the text of each
+    /// Length, in bytes, of the longest argument that is passed to a plan. It is an upper bound for the text of each
     /// parameter.
     pub(super) longest: u64,
 }
@@ -177,7 +177,7 @@ impl Measure<'_> {
         }
     }
 
-    /// Returns the size of an operand with this number of bytes and arguments.
+    /// Returns the size of an operand, given its number of bytes and its number of arguments.
     fn operand(&self, bytes: u64, arguments: usize) -> Size {
         Size { operands: 1, ..Size::of_text(bytes.saturating_add(self.given(arguments))) }
     }
@@ -191,7 +191,7 @@ impl Measure<'_> {
     }
 }
 
-/// Returns the length, in bytes, of the longest argument of these calls.
+/// Returns the length, in bytes, of the longest argument in these calls.
 pub(super) fn longest<'c>(calls: impl Iterator<Item = &'c Call<'c>>) -> u64 {
     calls.flat_map(|call| call.args).map(|arg: &Arg<'_>| length(arg.span())).max().unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! Infers the types of parameters that are written without types, and reports each list of such parameters once.
+//! Infers the types of parameters that are declared without types. Reports each list of such parameters once.
 
 use std::collections::BTreeSet;
 
@@ -44,7 +44,7 @@ pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &A
     found
 }
 
-/// The parentheses after the name of a plan, if they may be parameters.
+/// The parentheses after the name of a plan that may contain parameters.
 struct ParameterList<'s> {
     names: Vec<Name<'s>>,
     /// Type that is written before the name, if there is only one name.
@@ -66,7 +66,7 @@ impl<'s> ParameterList<'s> {
         Some(Self { names, kind, span: condition.span, elements: plan.elements })
     }
 
-    /// Reads `(d, v)`, which resembles formal notation, as a header.
+    /// Interprets `(d, v)`, which resembles formal notation, as a header.
     fn of_formal(plan: &Plan<'s>) -> Option<Self> {
         let [Element { primary: Primary::Formal(formal), marks: None, span }, elements @ ..] = plan.elements else {
             return None;
@@ -88,12 +88,12 @@ fn named<'s>(call: &Call<'s>) -> Name<'s> {
     Spanned { node: call.name, span: call.name_span() }
 }
 
-/// Returns the kind that the first use of a parameter in its plan requires.
+/// Returns the kind that is required where a parameter is first used in its plan.
 pub(super) fn kind_by_use(plan: &Plan<'_>, name: &str, alphabet: &Alphabet) -> Option<ParameterKind> {
     UseFinder { alphabet, elements: plan.elements }.kind_of(name)
 }
 
-/// Writes a type as in a plan.
+/// Returns the name of a type, as plans write it.
 pub(super) fn type_name(kind: ParameterKind) -> String {
     let name = ParameterKind::NAMES.iter().find(|name| ParameterKind::from_name(name) == Some(kind));
     if let ParameterKind::Bits(length) = kind {
@@ -121,8 +121,8 @@ struct UseFinder<'a, 's> {
 }
 
 impl UseFinder<'_, '_> {
-    /// Returns the kind that a name must have: a count if it is a loop count, and otherwise the kind of the first
-    /// parameter that gets the name as its argument; `None` if the name is not used in these ways.
+    /// Returns the kind that a name must have. For a loop count, this is a count; otherwise, it is the kind of the
+    /// first parameter to which the name is passed; `None` if the name is not used in these ways.
     fn kind_of(&self, name: &str) -> Option<ParameterKind> {
         let is_name = |arg: &Arg<'_>| matches!(arg, Arg::Name(given) if given.node == name);
         if counts(self.elements, name) {
@@ -139,7 +139,7 @@ impl UseFinder<'_, '_> {
     }
 }
 
-/// Returns `true` if a loop in these elements has this name as its loop count.
+/// Returns `true` if a loop in these elements has `name` as its loop count.
 fn counts(elements: &[Element<'_>], name: &str) -> bool {
     let is_count = |count: &Count<'_>| matches!(count, Count::Name(given) if given.node == name);
     elements.iter().any(|element| {

@@ -29,18 +29,18 @@ pub enum Visit<'p> {
 #[derive(Debug)]
 pub struct Walk<'p> {
     root: Option<&'p Scope>,
-    /// Parts that were entered and not left, each with its remaining nodes.
+    /// Parts that have been entered and not left yet, each with its remaining nodes.
     open: Vec<(PlanPart<'p>, slice::Iter<'p, Node>)>,
 }
 
 impl Plan {
-    /// Returns a walk over all parts, which enters each part, visits the parts inside it, and leaves it.
+    /// Returns a walk over all parts. It enters each part, visits the parts inside it, and leaves it.
     #[must_use]
     pub fn walk(&self) -> Walk<'_> {
         Walk { root: Some(&self.root), open: Vec::new() }
     }
 
-    /// Returns all parts in pre-order: a part comes before its nested parts.
+    /// Returns all parts in pre-order: each part comes before its nested parts.
     pub fn parts(&self) -> impl Iterator<Item = PlanPart<'_>> {
         let mut walk = self.walk();
         iter::from_fn(move || walk.by_ref().find_map(Visit::entered))
@@ -48,13 +48,13 @@ impl Plan {
 }
 
 impl<'p> Walk<'p> {
-    /// Returns the number of parts that enclose the next part to be visited.
+    /// Returns the number of parts that enclose the part that is visited next.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.open.len()
     }
 
-    /// Returns the scopes that enclose the next part to be visited, the innermost first.
+    /// Returns the scopes that enclose the part that is visited next; the innermost comes first.
     pub fn scopes(&self) -> impl Iterator<Item = &'p Scope> {
         self.open.iter().rev().filter_map(|(part, _)| part.scope())
     }
@@ -80,7 +80,7 @@ impl<'p> Iterator for Walk<'p> {
 }
 
 impl<'p> Visit<'p> {
-    /// Returns the part, if this step enters the part.
+    /// Returns the part if this step enters it; `None` otherwise.
     #[must_use]
     pub fn entered(self) -> Option<PlanPart<'p>> {
         match self {
@@ -111,7 +111,7 @@ impl<'p> PlanPart<'p> {
         }
     }
 
-    /// Returns the scope, if the part is a scope.
+    /// Returns the scope if the part is a scope; `None` otherwise.
     #[must_use]
     pub fn scope(self) -> Option<&'p Scope> {
         match self {
@@ -120,7 +120,7 @@ impl<'p> PlanPart<'p> {
         }
     }
 
-    /// Returns the atom, if the part is an atom.
+    /// Returns the atom if the part is an atom; `None` otherwise.
     #[must_use]
     pub fn atom(self) -> Option<&'p Atom> {
         match self {

@@ -1,4 +1,4 @@
-//! Finds interrupts and laws of a plan by their names in scripts.
+//! Finds interrupts and laws of a plan by the names that scripts use.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -8,18 +8,18 @@ use crate::alphabet::{self, Alphabet};
 use crate::diagnostic::{SourceId, has_errors};
 use crate::syntax::{Arena, NoFiles, parse_with};
 
-/// The texts that a script for a plan can name.
+/// The texts of a plan that scripts may name.
 pub(crate) struct Words<'p> {
     plan: &'p Plan,
     alphabet: &'p Alphabet,
     interrupts: BTreeSet<&'p str>,
-    /// Conditions that a script must not list, each with the reason.
+    /// Conditions that a script must not list, with the reason for each.
     counted: BTreeMap<&'p str, &'static str>,
     laws: BTreeSet<&'p str>,
 }
 
 impl<'p> Words<'p> {
-    /// Collects the texts of this plan, which was resolved against `alphabet`.
+    /// Collects the texts of a plan; the plan was resolved against `alphabet`.
     pub(crate) fn new(plan: &'p Plan, alphabet: &'p Alphabet) -> Self {
         let (interrupts, counted, laws) = (BTreeSet::new(), BTreeMap::new(), BTreeSet::new());
         let mut words = Self { plan, alphabet, interrupts, counted, laws };
@@ -42,7 +42,7 @@ impl<'p> Words<'p> {
         });
     }
 
-    /// Returns the text of the interrupt that a script names as `written`.
+    /// Returns the text of the interrupt to which the script's word `written` refers.
     ///
     /// # Errors
     /// Returns a message if the plan has no such interrupt, or if a script must not name it.
@@ -59,7 +59,7 @@ impl<'p> Words<'p> {
         known(&written, text, &self.interrupts, ["interrupt", "interrupts"])
     }
 
-    /// Returns the text of the law that a script names as `written`.
+    /// Returns the text of the law to which the script's word `written` refers.
     ///
     /// # Errors
     /// Returns a message if the plan has no such law.
@@ -88,8 +88,7 @@ impl<'p> Words<'p> {
     }
 }
 
-/// Returns `text` if the plan contains this text; otherwise a message with the most similar text, or with all
-/// texts.
+/// Returns `text` if the plan contains it. Otherwise, returns a message with the most similar text or with all texts.
 fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str; 2]) -> Result<String, String> {
     if texts.contains(text.as_str()) {
         return Ok(text);
@@ -108,8 +107,8 @@ fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str
 }
 
 impl Condition {
-    /// Returns the quark that fires by the time or by the path driven, with the reason why scripts must omit it; `None`
-    /// if the condition is not such a quark.
+    /// Returns the quark that depends only on the time or on the length of the driven path, with the reason why scripts
+    /// must omit it; `None` if the condition is not such a quark.
     fn counted(&self) -> Option<(QuarkId, &'static str)> {
         match self {
             Self::Wait { quark, .. } | Self::Elapsed { quark, .. } => {

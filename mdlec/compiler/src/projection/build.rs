@@ -1,4 +1,4 @@
-//! Makes the nodes of projected plans.
+//! Creates the nodes of projected plans.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +7,7 @@ use crate::diagnostic::{Diagnostic, Span};
 use crate::syntax::Arena;
 use crate::syntax::tree::{Arg, Atom, Call, Condition, ConditionNode, Element, Marks, Name, Number, Primary, Spanned};
 
-/// The state of a projection: the group, the arena for new nodes, and the diagnostics so far.
+/// State of a projection: the group, the arena for new nodes, and the diagnostics so far.
 pub(super) struct Build<'b, 's> {
     pub(super) arena: &'s Arena,
     pub(super) robots: &'b [Name<'s>],
@@ -15,29 +15,29 @@ pub(super) struct Build<'b, 's> {
     pub(super) alphabet: &'b Alphabet,
     /// Name of the group's plan.
     pub(super) group: &'s str,
-    /// For each atom of the group, its number in the plans of the robots after the first. The last entry is the number
-    /// of the final stop in these plans.
+    /// For each atom of the group, the number that it has in the plans of all robots except the first. The last entry
+    /// is the number of the final stop in these plans.
     pub(super) numbers: Vec<usize>,
     /// Number of atoms that have been projected.
     pub(super) done: usize,
-    /// Meetings as written in the group's plan, each with the interrupts that the first robot reads in its place.
+    /// Meetings as written in the group's plan, each with the interrupts that replace it in the first robot's plan.
     pub(super) meetings: BTreeMap<String, BTreeSet<String>>,
     /// For each label of an atom, the number of atoms before that atom.
     pub(super) labels: BTreeMap<&'s str, usize>,
 }
 
-/// Returns the empty span at the start of a span.
+/// Returns an empty span at the start of `span`.
 pub(super) fn begin(span: Span) -> Span {
     Span { end: span.start, ..span }
 }
 
 impl<'s> Build<'_, 's> {
-    /// Returns the number of the atom that is being projected, in the plans of the robots after the first.
+    /// Returns the number that the current atom has in the plans of all robots except the first.
     pub(super) fn own_number(&self) -> usize {
         self.numbers.get(self.done).copied().unwrap_or(1)
     }
 
-    /// Returns the number of the final stop, in the plans of the robots after the first.
+    /// Returns the number that the final stop has in the plans of all robots except the first.
     pub(super) fn last_number(&self) -> usize {
         self.numbers.last().copied().unwrap_or(1)
     }
@@ -60,7 +60,7 @@ impl<'s> Build<'_, 's> {
         self.arena.alloc(Call { name, args: self.arena.alloc_slice_copy(args), span })
     }
 
-    /// Returns the condition `past ROBOT NUMBER` at `span`. For an empty span, reports of runs show the text of this
+    /// Returns the condition `past ROBOT NUMBER` at `span`. If the span is empty, reports of runs show the text of this
     /// condition.
     pub(super) fn past(&self, robot: &Name<'s>, number: usize, span: Span) -> Condition<'s> {
         let number = Number::new(self.arena.alloc_str(&number.to_string()), span);
@@ -68,13 +68,13 @@ impl<'s> Build<'_, 's> {
         Condition { node: ConditionNode::Call(call), span }
     }
 
-    /// Returns the condition that the first robot has reached the atom with this number in its plan.
+    /// Returns the condition that fires once the first robot has reached the atom with this number in its plan.
     pub(super) fn past_first(&self, number: usize, span: Span) -> Condition<'s> {
         let first = self.robots.first().copied().unwrap_or(Spanned { node: "", span });
         self.past(&first, number, begin(span))
     }
 
-    /// Joins conditions with `join`; returns a single condition unchanged.
+    /// Joins conditions with `join`. A single condition is returned unchanged.
     pub(super) fn join(
         &self,
         parts: &[Condition<'s>],
@@ -87,7 +87,7 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Returns a length in metres, rounded to the millimetre, as an argument at `span`.
+    /// Returns an argument at `span` for a length in metres, which is rounded to the millimetre.
     pub(super) fn length(&self, metres: f64, span: Span) -> Arg<'s> {
         let digits = format!("{metres:.3}");
         let digits = digits.trim_end_matches('0').trim_end_matches('.');

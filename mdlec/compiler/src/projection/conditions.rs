@@ -1,14 +1,14 @@
-//! Projects the conditions of a group. The first robot reads the conditions of atoms and behaviors. An operand of the
-//! group's own condition that is about one robot becomes a part of the condition of this robot's plan; the first robot
-//! detects by `past` that another robot has left its plan.
+//! Projects the conditions of a group. The first robot evaluates the conditions of atoms and behaviors. If an operand
+//! of the group's own condition is about a single robot, it becomes part of the condition of this robot's plan; the
+//! first robot uses `past` to detect that another robot has left its plan.
 
 use super::build::{Build, begin};
 use super::owners::{ANY, ConditionContext, LINK, MEETING, Owned, Owner};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{After, Arg, Call, Compared, Condition, ConditionNode, Operand, Plan};
 
-/// Returns, for each robot in the order of the group, the condition that guards the robot's plan: when it fires, only
-/// the final stop of the plan remains. Returns `None` for a robot without such a condition.
+/// Returns, for each robot in the order of the group, the condition that guards the robot's plan. When the condition
+/// fires, only the final stop of the plan remains. The entry is `None` for a robot without such a condition.
 pub(super) fn guards<'s>(plan: &Plan<'s>, build: &mut Build<'_, 's>) -> Vec<Option<Condition<'s>>> {
     let whole = plan.condition.filter(|condition| condition.node != ConditionNode::Null);
     let span = whole.map_or(plan.name.span, |condition| condition.span);
@@ -34,12 +34,12 @@ pub(super) fn guards<'s>(plan: &Plan<'s>, build: &mut Build<'_, 's>) -> Vec<Opti
     guards.iter().map(joined).collect()
 }
 
-/// Projects the condition of an atom, which the first robot reads.
+/// Projects the condition of an atom, which the first robot evaluates.
 pub(super) fn of_atom<'s>(condition: &Condition<'s>, build: &mut Build<'_, 's>) -> Condition<'s> {
     build.read(condition, ConditionContext::Atom, 0)
 }
 
-/// Projects the condition of a behavior in place, which the first robot reads.
+/// Projects the condition of a behavior that is defined inside another plan. The first robot evaluates this condition.
 pub(super) fn of_behavior<'s>(condition: &Condition<'s>, build: &mut Build<'_, 's>) -> Condition<'s> {
     build.read(condition, ConditionContext::Behavior, 0)
 }
@@ -64,7 +64,7 @@ fn negates_any(condition: &Condition<'_>, is_negated: bool) -> bool {
     }
 }
 
-/// Returns a warning about a group without a timer: if one robot is off, the others wait for it forever.
+/// Returns a warning about a group without a timer, in which the other robots wait forever if one robot is off.
 fn untimed(plan: &Plan<'_>, whole: Option<&Condition<'_>>) -> Diagnostic {
     let message = format!("if a robot of the group `{}` is off, the others wait for ever", plan.name.node);
     let span = whole.map_or(plan.name.span, |condition| condition.span);
@@ -73,8 +73,8 @@ fn untimed(plan: &Plan<'_>, whole: Option<&Condition<'_>>) -> Diagnostic {
 }
 
 impl<'s> Build<'_, 's> {
-    /// Returns the indices of the robots that read this operand of the group's condition. Reports an operand that no
-    /// robot can read.
+    /// Returns the indices of the robots that evaluate this operand of the group's condition. Reports an error if no
+    /// robot can evaluate it.
     fn guarded(&mut self, operand: &Condition<'s>) -> Vec<usize> {
         let all = 0..self.robots.len();
         if negates_any(operand, false) {
@@ -118,8 +118,8 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Returns the owner of a quark, without reporting errors. An invalid quark counts as a quark of the first robot;
-    /// the error is reported when the condition of that robot is projected.
+    /// Returns the owner of a quark, without reporting errors. An invalid quark is treated as a quark of the first
+    /// robot; the error is reported when the condition of that robot is projected.
     fn silently(&mut self, call: &Call<'s>) -> Option<Owner> {
         let first = self.found.len();
         let owned = self.owned(call, ConditionContext::Head);
@@ -127,7 +127,7 @@ impl<'s> Build<'_, 's> {
         Some(owned.map_or(Owner::One(0), |owned| owned.owner))
     }
 
-    /// Projects a condition for this robot.
+    /// Converts a condition of the group to the condition for this robot.
     fn read(&mut self, condition: &Condition<'s>, place: ConditionContext, robot: usize) -> Condition<'s> {
         let span = condition.span;
         let node = match condition.node {
@@ -188,7 +188,7 @@ impl<'s> Build<'_, 's> {
         Condition { node: ConditionNode::Call(self.arena.alloc(own)), span }
     }
 
-    /// Projects `all rendezvous` and `robot2.rendezvous`: the condition that the other robots have reached this atom.
+    /// Projects `all rendezvous` and `robot2.rendezvous` to the condition that the other robots have reached this atom.
     fn meeting(&mut self, owner: Owner, place: ConditionContext, span: Span) -> Option<Condition<'s>> {
         let met = match owner {
             _ if place != ConditionContext::Atom => Err("robots meet in an atom"),
@@ -240,7 +240,7 @@ impl<'s> Build<'_, 's> {
         ConditionNode::Comparison(self.arena.alloc(Compared { left: self.arena.alloc(left), right, ..*compared }))
     }
 
-    /// Returns `true` if a robot can read a quark of this owner; reports an error otherwise.
+    /// Returns `true` if a robot can read a quark with this owner; otherwise, reports an error.
     fn may_read(&mut self, call: &Call<'s>, owner: Owner, place: ConditionContext, robot: usize) -> bool {
         let others = match owner {
             Owner::Timer => return true,

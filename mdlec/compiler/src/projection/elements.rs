@@ -1,5 +1,5 @@
-//! Makes a plan for each robot of a group. The plan of the first robot keeps the group's conditions; in the plan of any
-//! other robot, an atom ends when the first robot has reached its next atom.
+//! Creates a plan for each robot of a group. The plan of the first robot keeps the group's conditions. In the plans of
+//! all other robots, an atom ends when the first robot has reached its next atom.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,8 +15,8 @@ use crate::syntax::tree::{
     Arg, Atom, Condition, ConditionNode, Element, Frame, Marks, Name, Number, Plan, Primary, Spanned,
 };
 
-/// Time for which each robot stops at the end of its plan: a robot whose plan has ended sends nothing, and a message on
-/// the state link may be lost.
+/// Time for which each robot stops before its plan ends. It is needed because a robot whose plan has ended sends
+/// nothing, and messages on the state link may be lost.
 const LAST_STOP: &str = "2s";
 
 /// Elements of each robot, in the order of the group.
@@ -44,7 +44,7 @@ pub(super) fn plans<'s>(
 }
 
 /// Appends the number of the next atom to `numbers` for each atom, and adds the labels of atoms to `labels`. An atom
-/// whose law may complete counts as two, because a waiting atom follows it.
+/// whose law may complete is counted as two atoms, because a waiting atom follows it.
 fn number<'s>(
     elements: &[Element<'s>],
     alphabet: &Alphabet,
@@ -65,13 +65,13 @@ fn number<'s>(
     }
 }
 
-/// Returns `true` if a law of this name may complete by itself.
+/// Returns `true` if a law with this name may complete by itself.
 fn completes(alphabet: &Alphabet, name: &str) -> bool {
     let mut declarations = alphabet.declarations_of(name);
     declarations.any(|declaration| declaration.kind == DeclarationKind::Control && declaration.completes)
 }
 
-/// Returns `true` if a law of this name may use a direction of its frame.
+/// Returns `true` if a law with this name may use a direction of its frame.
 fn uses_frame(alphabet: &Alphabet, name: &str) -> bool {
     alphabet.declarations_of(name).any(|known| has_direction(name, known.params.iter().map(|param| param.kind)))
 }
@@ -87,8 +87,8 @@ fn use_frame(alphabet: &Alphabet, elements: &[Element<'_>]) -> bool {
 }
 
 impl<'s> Build<'_, 's> {
-    /// Makes the plan of a robot: a behavior that contains the robot's elements and has the condition `guard`, followed
-    /// by the final stop.
+    /// Creates the plan of a robot: a behavior with the robot's elements and the condition `guard`, followed by the
+    /// final stop.
     fn plan(&self, plan: &Plan<'s>, robot: Name<'s>, guard: Option<Condition<'s>>, body: &[Element<'s>]) -> Plan<'s> {
         let span = plan.name.span;
         let body = self.list(body);
@@ -154,7 +154,7 @@ impl<'s> Build<'_, 's> {
         parts
     }
 
-    /// Returns `true` if `name` is the name of the plan of a robot in the group.
+    /// Returns `true` if `name` is the name of the plan of one of the group's robots.
     fn is_part(&self, name: &str) -> bool {
         self.robots.iter().any(|robot| part_name(self.group, robot.node) == name)
     }
@@ -163,8 +163,8 @@ impl<'s> Build<'_, 's> {
         self.found.push(Diagnostic::new(Code::E0208, message, span, "not in a group").help(help));
     }
 
-    /// Projects an atom. In the plan of the first robot the atom keeps its condition; in the plan of every other robot
-    /// it runs until the first robot has reached its next atom.
+    /// Projects an atom. In the plan of the first robot, the atom keeps its condition; in the plans of all other
+    /// robots, it runs until the first robot has reached its next atom.
     fn group_atom(&mut self, atom: &Atom<'s>, element: &Element<'s>, parts: &mut RobotElements<'s>) {
         let condition = conditions::of_atom(&atom.condition, self);
         self.done += 1;
@@ -191,7 +191,7 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Projects a behavior in place, whose condition the first robot reads.
+    /// Projects a behavior in place. The first robot evaluates its condition.
     fn behavior(&mut self, plan: &Plan<'s>, element: &Element<'s>, parts: &mut RobotElements<'s>) {
         if let [param, ..] = plan.params {
             self.refuse("a plan in a group has no parameters", param.name.span, "write the value in each place");
@@ -206,8 +206,8 @@ impl<'s> Build<'_, 's> {
         self.joined(inner, element, parts);
     }
 
-    /// Appends the projected elements of a string to the elements of each robot. The first robot keeps the string's
-    /// label and frame; another robot keeps the frame if a law in its elements may use it.
+    /// Appends the projected elements of a string to the elements of each robot. The first robot's plan keeps the
+    /// string's label and frame. Another robot's plan keeps the frame if a law in its elements may use it.
     fn joined(&self, inner: RobotElements<'s>, element: &Element<'s>, parts: &mut RobotElements<'s>) {
         for (robot, (part, inner)) in parts.iter_mut().zip(inner).enumerate() {
             let label = element.label().filter(|_| robot == 0);

@@ -1,5 +1,5 @@
-//! Projects formations: `formation SHAPE SPACING (LAW)` becomes the law of the first robot, and a `slot` for each other
-//! robot.
+//! Projects formations. `formation SHAPE SPACING (LAW)` becomes the law of the first robot, and a `slot` for each of
+//! the other robots.
 
 use super::build::Build;
 use crate::alphabet::{Alphabet, Param, ParameterKind, Unit, did_you_mean};
@@ -8,7 +8,7 @@ use crate::syntax::tree::{Arg, Call};
 
 /// Word that begins a formation.
 pub(super) const FORMATION: &str = "formation";
-/// Name of the law by which the first robot leaves room for the other robots.
+/// Name of the law with which the first robot leaves room for the other robots.
 const LEAD: &str = "lead";
 /// Height of a triangle with sides of length 1.
 const HEIGHT: f64 = 0.866_025_403_784_438_6;
@@ -35,7 +35,8 @@ enum Shape {
 const SHAPES: [(&str, Shape); 3] = [("line", Shape::Line), ("column", Shape::Column), ("triangle", Shape::Triangle)];
 
 impl Shape {
-    /// Returns the place of a robot relative to the first robot, as distances ahead and to the left, for a spacing of
+    /// Returns the position of a robot relative to the first robot, as distances ahead and to the left, for a spacing
+    /// of
     /// 1. `number` counts the robots after the first, from 0.
     fn slot(self, number: u32) -> (f64, f64) {
         let (row, side) = (f64::from(number / 2 + 1), if number.is_multiple_of(2) { 1.0 } else { -1.0 });
@@ -56,7 +57,7 @@ impl Shape {
     }
 }
 
-/// Reads a formation of the group's robots; `None` if the formation is invalid, which is then reported.
+/// Reads a formation of the group's robots. Reports an invalid formation and returns `None` for it.
 pub(super) fn read<'s>(call: &Call<'s>, build: &mut Build<'_, 's>) -> Option<Formation<'s>> {
     let others = u32::try_from(build.robots.len().saturating_sub(1)).unwrap_or(u32::MAX);
     let shape = shape(call, others);
@@ -88,7 +89,7 @@ pub(super) fn read<'s>(call: &Call<'s>, build: &mut Build<'_, 's>) -> Option<For
     Some(Formation { first, others: slots.collect() })
 }
 
-/// Returns `true` if these arguments of `goAvoid` fit the parameters of `lead` that follow its width.
+/// Returns `true` if these arguments of `goAvoid` fit the parameters of `lead` that follow the width.
 fn fit(args: &[Arg<'_>], alphabet: &Alphabet) -> bool {
     let fits = |arg: &Arg<'_>, param: &Param| match arg {
         Arg::Number(number) => {

@@ -1,7 +1,7 @@
-//! Projects the plan of a group of robots: makes one plan for each robot (docs/src/reference/semantics.md, 2.7; paper,
+//! Projects the plan of a group of robots: creates a plan for each robot (docs/src/reference/semantics.md, 2.7; paper,
 //! sections II-C and III-G).
 //!
-//! A projected plan is a tree with spans of the group's text, so later stages do not depend on groups.
+//! A projected plan is a tree with spans in the group's text, so later stages do not depend on groups.
 
 mod build;
 mod conditions;
@@ -31,14 +31,14 @@ pub struct RobotPlan {
     pub robot: String,
     /// Name of the robot's own plan.
     pub plan: String,
-    /// Meetings as written in the group's plan, such as `all rendezvous`, each with the interrupts that the first robot
-    /// reads in its place; empty for every other robot.
+    /// Meetings as written in the group's plan, such as `all rendezvous`, each with the interrupts that replace it in
+    /// the first robot's plan; empty for all other robots.
     pub meetings: BTreeMap<String, BTreeSet<String>>,
 }
 
 impl RobotPlan {
     /// Translates a text of the group's plan to texts of the robot's own plan: `a.x > 7m` becomes `x > 7m`, and a
-    /// meeting becomes all interrupts that the robot reads in its place.
+    /// meeting becomes all interrupts that replace it in the robot's plan.
     #[must_use]
     pub fn own_words(&self, text: &str) -> Vec<String> {
         let words: Vec<_> = text.split_whitespace().collect();
@@ -52,7 +52,7 @@ impl RobotPlan {
     }
 }
 
-/// Replaces the plan of each group by the plans of its robots. Returns a [`RobotPlan`] for each of the new plans, and
+/// Replaces the plan of each group with the plans of its robots. Returns a [`RobotPlan`] for each of the new plans, and
 /// the errors in groups.
 pub fn project<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet) -> (Vec<RobotPlan>, Vec<Diagnostic>) {
     let mut found = robots::misplaced(files);
@@ -106,7 +106,7 @@ fn lacks_link(alphabet: &Alphabet) -> bool {
     !alphabet.has(&link) && alphabet.needs_engine(&link)
 }
 
-/// Reports a group whose plan is to become an executable.
+/// Reports a group whose plan would have to become an executable.
 fn no_link(plan: &Plan<'_>) -> Diagnostic {
     let name = plan.name.node;
     let message = format!("the group `{name}` needs the state link, and an executable has none");

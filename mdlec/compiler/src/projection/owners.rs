@@ -5,15 +5,15 @@ use crate::alphabet::{ParameterKind, nearest};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Arg, Call};
 
-/// The interrupt by which robots meet.
+/// The interrupt with which robots meet.
 pub(super) const MEETING: &str = "rendezvous";
 /// Word before a quark that each robot reads for itself.
 pub(super) const ANY: &str = "any";
-/// Help about what the state link carries.
+/// Help message about the data that the state link carries.
 pub(super) const LINK: &str =
     "the link carries where each robot and its plan are: for these there are `all rendezvous` and formations";
 
-/// Place of a condition, which determines the quarks that the condition may contain.
+/// Context of a condition, which determines the quarks that the condition may contain.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ConditionContext {
     /// An operand of the group's own condition.
@@ -37,14 +37,14 @@ pub(super) enum Owner {
     All,
 }
 
-/// A quark without its robot.
+/// A quark, separated from the name of its robot.
 pub(super) struct Owned<'s> {
     pub(super) owner: Owner,
     pub(super) call: Call<'s>,
 }
 
 impl<'s> Build<'_, 's> {
-    /// Separates a quark from the name of its robot; returns `None` for an invalid quark, which is then reported.
+    /// Separates a quark from the name of its robot. Reports an invalid quark and returns `None` for it.
     pub(super) fn owned(&mut self, call: &Call<'s>, place: ConditionContext) -> Option<Owned<'s>> {
         match call.name {
             "wait" => Some(Owned { owner: Owner::Timer, call: *call }),
@@ -60,7 +60,7 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Reads `any q` and `all q`.
+    /// Parses `any q` and `all q`.
     fn of_several(&mut self, call: &Call<'s>, owner: Owner) -> Option<Owned<'s>> {
         match call.args {
             [Arg::Name(name), args @ ..] if !name.node.contains('.') => {
@@ -76,7 +76,7 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Reads `robot1.x`.
+    /// Parses `robot1.x`.
     fn of_one(&mut self, call: &Call<'s>, robot: &'s str, name: &'s str) -> Option<Owned<'s>> {
         let start = call.span.start + u32::try_from(robot.len()).unwrap_or(0);
         let place = Span { end: start, ..call.span };
@@ -109,7 +109,7 @@ impl<'s> Build<'_, 's> {
         }
     }
 
-    /// Returns `true` if a robot would apply or read a quark that names this robot itself, which is then reported.
+    /// Returns `true`, and reports an error, if a robot would apply or read a quark that names this robot itself.
     pub(super) fn names_itself(&mut self, call: &Call<'s>, robot: usize) -> bool {
         let Some(own) = self.robots.get(robot) else { return false };
         let names_robot = |index: usize| {

@@ -6,8 +6,8 @@ use crate::diagnostic::SourceId;
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, Number, Operand, Plan, Primary};
 use crate::syntax::{self, Loader, arena_for, parse_with};
 
-/// Returns, as MDLe text, the plans of all robots in the groups of a file, or only the plan called `wanted`; empty if
-/// there is no such plan.
+/// Returns the plans of all robots in the groups of a file as MDLe text; if `wanted` is given, only the plan with this
+/// name. The text is empty if there is no such plan.
 #[must_use]
 pub fn projected(
     source: SourceId,
@@ -90,7 +90,8 @@ fn condition(written: &Condition<'_>) -> String {
     }
 }
 
-/// Prints an operand of a condition that `word` joins, in parentheses if the operand binds less tightly than the word.
+/// Prints an operand of a condition whose operator is `word`, in parentheses if the operand binds less tightly than the
+/// operator.
 fn operand_of(operand: &Condition<'_>, word: &str) -> String {
     let text = condition(operand);
     let is_looser = match operand.node {

@@ -1,4 +1,4 @@
-//! Checks the heads of groups, and that the plan of a group is not inside another plan and not used by another plan.
+//! Checks the heads of groups. Also checks that no other plan contains or uses the plan of a group.
 
 use std::collections::BTreeSet;
 
@@ -9,8 +9,8 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::Files;
 use crate::syntax::tree::{Arg, Call, Element, Name, Plan, Primary};
 
-/// Returns the robots of a group, beginning with the robot that decides; `None` if there are fewer than two or too
-/// many. Reports errors in the head of the group.
+/// Returns the robots of a group, beginning with the robot that makes the decisions; `None` if there are fewer than two
+/// or too many. Reports errors in the head of the group.
 pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Diagnostic>) -> Option<Vec<Name<'s>>> {
     let first = found.len();
     if let [param, ..] = plan.params {
@@ -54,7 +54,7 @@ pub(super) fn named<'s>(plan: &Plan<'s>, written: &[Arg<'s>], found: &mut Vec<Di
     (robots.len() > 1).then_some(robots)
 }
 
-/// Reports the plans of groups that are parts of other plans.
+/// Reports each group plan that is written inside another plan.
 pub(super) fn misplaced(files: &Files<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for plan in &files.plans {
@@ -71,7 +71,7 @@ pub(super) fn misplaced(files: &Files<'_>) -> Vec<Diagnostic> {
     found
 }
 
-/// Reports uses by name of group plans, and of the plans of a group's robots, in other plans.
+/// Reports plans that use a group's plan, or the plan of one of the group's robots, by name.
 pub(super) fn uses_of_groups(files: &Files<'_>) -> Vec<Diagnostic> {
     let (mut groups, mut parts) = (BTreeSet::new(), BTreeSet::new());
     for plan in &files.plans {
@@ -124,15 +124,15 @@ pub(super) fn used(call: &Call<'_>) -> Diagnostic {
     report.help("a group has plans for several robots, and runs by itself")
 }
 
-/// Reports a use of the plan of one robot of a group by name. The plan must run by itself, because the other robots
-/// count its atoms from the beginning.
+/// Reports the use by name of a plan that is for one robot of a group. Such a plan must run by itself, because the
+/// other robots count its atoms from the beginning.
 pub(super) fn part_used(call: &Call<'_>) -> Diagnostic {
     let message = format!("`{}` is the plan of a robot of a group, and cannot be part of a plan", call.name);
     let report = Diagnostic::new(Code::E0208, message, call.name_span(), "the plan of a robot of a group");
     report.help("the other robots of the group count its atoms from the start: it runs by itself")
 }
 
-/// Calls `act` with each of these elements and all inside them.
+/// Calls `act` with each of these elements and with all elements inside them.
 fn visit<'s>(elements: &[Element<'s>], act: &mut impl FnMut(&Element<'s>)) {
     for element in elements {
         act(element);

@@ -8,8 +8,8 @@ use super::names::quark_type;
 use crate::alphabet::ParameterKind;
 use crate::plan::{Compared, Comparison, Operator, Quark, QuarkId, Value, in_degrees};
 
-/// Emits the type of a quark among `quarks`: `robot::Go`, or for a comparison `runtime::Comparison<robot::R,
-/// robot::X>`.
+/// Emits the type of a quark: `robot::Go`, or for a comparison `runtime::Comparison<robot::R, robot::X>`. `quarks`
+/// contains all quarks of the plan.
 pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     let Some(comparison) = &quark.comparison else {
         let kind = quark_type(&quark.name, quark.overload);
@@ -23,8 +23,8 @@ pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     quote!(runtime::Comparison<#signal, #with>)
 }
 
-/// Emits a comparison: `runtime::Comparison::new(…)`. `signal` emits the comparison's signals. If a signal is compared
-/// with a value, `none` takes the place of the second signal's type.
+/// Emits a comparison: `runtime::Comparison::new(…)`. `signal` emits the signals of the comparison. If a signal is
+/// compared with a value, `none` is used as the type of the second signal.
 pub(super) fn compared(
     comparison: &Comparison,
     none: &TokenStream,
@@ -53,7 +53,8 @@ pub(super) fn compared(
     quote!(runtime::Comparison::new(#left, runtime::Operator::#operator, #with))
 }
 
-/// Emits a quark among `quarks` with its arguments, for a constant: `robot::Go::new(…)`.
+/// Emits a quark with its arguments for use in a constant: `robot::Go::new(…)`. `quarks` contains all quarks of the
+/// plan.
 pub(super) fn quark_value(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     if let Some(comparison) = &quark.comparison {
         return compared(comparison, &quote!(runtime::NoSignal), |signal| {
@@ -70,8 +71,8 @@ pub(super) fn arguments(quark: &Quark) -> impl Iterator<Item = TokenStream> {
     quark.args.iter().map(argument)
 }
 
-/// Emits an angle: in degrees if a number of degrees with at most six decimals converts to exactly this angle, and
-/// otherwise in radians.
+/// Emits an angle. If a number of degrees with at most six decimals converts to exactly this angle, emits degrees;
+/// otherwise, emits radians.
 pub(super) fn angle(radians: f64) -> TokenStream {
     if let Some(degrees) = exact_degrees(radians).map(number) {
         return quote!(runtime::Radians::from_degrees(#degrees));
@@ -80,19 +81,20 @@ pub(super) fn angle(radians: f64) -> TokenStream {
     quote!(runtime::Radians(#radians))
 }
 
-/// Returns the number of degrees that converts to exactly this angle; `None` if there is none. Nested frames add up in
-/// radians: 30° in 45° is not the value of 75°, but the floating-point number next to it.
+/// Returns the number of degrees that converts to exactly this angle; `None` if there is no such number. The angles of
+/// nested frames are added in radians: the sum of 30° and 45° is not exactly the value of 75°, but the floating-point
+/// number next to it.
 pub(super) fn exact_degrees(radians: f64) -> Option<f64> {
     in_degrees(radians).filter(|degrees| Radians::from_degrees(*degrees).0 == radians)
 }
 
-/// Emits a number. In Rust's syntax, its sign is a separate token.
+/// Emits a number. The sign is a separate token in Rust's syntax.
 pub(super) fn number(value: f64) -> TokenStream {
     let digits = Literal::f64_unsuffixed(value.abs());
     if value.is_sign_negative() { quote!(-#digits) } else { quote!(#digits) }
 }
 
-/// Emits an argument as a value of its unit type.
+/// Emits an argument as a value of the type for its unit.
 fn argument(value: &Value) -> TokenStream {
     match value {
         Value::Quantity { kind, exact, .. } => {

@@ -1,5 +1,5 @@
-//! Writes an alphabet as Rust code that checks a target's crate against the alphabet, signature by signature, for
-//! `mdlec bind` (paper, Definition 1).
+//! Writes an alphabet as Rust code for `mdlec bind` (paper, Definition 1). The code checks that a target's crate agrees
+//! with the alphabet, signature by signature.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -13,8 +13,8 @@ use super::layout::file_text;
 use super::signatures::from_arguments;
 use crate::alphabet::{Alphabet, DeclarationKind, Origin};
 
-/// Writes `src/alphabet.rs` of the crate that implements the alphabet: checks of what the crate must provide,
-/// and the items that plans need.
+/// Writes `src/alphabet.rs` for the crate that implements the alphabet. The file checks that the crate provides all
+/// required items, and contains the items that plans need.
 ///
 /// A target's crate exports `Input` and `Output` in its root; the quarks that it declares itself are in its
 /// module `quarks`. The quarks of the shared alphabet `atoms` are in the root of the crate `mdle_atoms`, whose
@@ -41,7 +41,7 @@ fn shared(alphabet: &Alphabet) -> String {
     format!("{}{text}", heading(&purpose))
 }
 
-/// Writes the constants of a target, the functions that construct its own quarks, and the tables of all quarks
+/// Writes the constants of a target, the functions that construct the target's own quarks, and the tables of all quarks
 /// that it can run.
 fn target(alphabet: &Alphabet) -> String {
     let quarks = Bound::all(alphabet);
@@ -71,7 +71,7 @@ fn heading(purpose: &str) -> String {
     )
 }
 
-/// Emits `pub use` of every quark from the module that implements it, and `use` of the shared alphabets.
+/// Emits `pub use` for each quark, from the module that implements it, and `use` for the shared alphabets.
 fn imports(quarks: &[Bound<'_>], home: &TokenStream) -> TokenStream {
     let mut places = BTreeMap::<&str, Vec<&Ident>>::new();
     for quark in quarks {
@@ -94,7 +94,7 @@ fn imports(quarks: &[Bound<'_>], home: &TokenStream) -> TokenStream {
     quote!(#(#imports)*)
 }
 
-/// Emits the constants `NAME`, `PERIOD` if the alphabet has a period, and `HASH`.
+/// Emits the constants `NAME`, `HASH` and, if the alphabet has a period, `PERIOD`.
 fn constants(alphabet: &Alphabet) -> TokenStream {
     let name = &alphabet.name;
     let period = alphabet.period.map(|nanos| {

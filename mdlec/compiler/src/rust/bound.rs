@@ -1,4 +1,4 @@
-//! A quark of an alphabet and its names in Rust.
+//! A quark of an alphabet, and its names in Rust code.
 
 use std::collections::BTreeMap;
 
@@ -18,8 +18,9 @@ pub(super) struct Bound<'a> {
 }
 
 impl<'a> Bound<'a> {
-    /// Returns the quarks of an alphabet that need code. Excluded are `wait`, `t` and `way`, which the machine
-    /// evaluates, quarks whose capability the robot lacks, and shared quarks whose capability has no trait.
+    /// Returns the quarks of an alphabet that need code. `wait`, `t` and `way` need none, because the machine evaluates
+    /// them. Quarks whose capability the robot lacks, and shared quarks whose capability has no trait, are excluded
+    /// too.
     pub(super) fn all(alphabet: &'a Alphabet) -> Vec<Self> {
         let mut overloads = BTreeMap::<&str, usize>::new();
         let mut functions = Distinct::quark_functions();
@@ -53,7 +54,7 @@ impl<'a> Bound<'a> {
         self.declaration.params.iter().map(move |param| (names.parameter(&param.name), param.kind))
     }
 
-    /// Returns the path of the function that constructs the quark, as the target's tables name it.
+    /// Returns the path of the function that constructs the quark, in the form that the target's tables use.
     pub(super) fn path(&self) -> String {
         match &self.declaration.origin {
             Origin::Target => self.function.to_string(),
@@ -62,7 +63,7 @@ impl<'a> Bound<'a> {
     }
 }
 
-/// Returns the trait of a capability; `None` if no trait represents it.
+/// Returns the trait that represents a capability; `None` if there is no such trait.
 pub(super) fn capability_trait(capability: &Capability) -> Option<Ident> {
     let name = match capability.name.as_str() {
         "odometry" => "Odometry",

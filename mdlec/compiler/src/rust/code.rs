@@ -1,5 +1,5 @@
-//! Emits a plan as inline code: quarks as constants, and the interrupts of scopes as functions that first evaluate the
-//! enclosing scopes.
+//! Emits a plan as inline code. Quarks become constants, and the interrupts of scopes become functions that first
+//! evaluate the enclosing scopes.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ use super::tables::entries;
 use crate::fsm::Machine;
 use crate::plan::{Compared, QuarkId};
 
-/// Emits the plan's type and its implementation, with an arm for each atom.
+/// Emits the type of the plan and its implementation, in which each atom has a match arm.
 pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
     let meaning = Meaning::new(machine);
     let constants = meaning.constants();
@@ -49,7 +49,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
 
 impl Meaning<'_> {
     /// Emits a constant for each quark of a law or an interrupt: `const GO_20_0: robot::Go = robot::Go::new(…);`.
-    /// Excluded are `wait` and the quarks that [`Meaning::signals`] returns.
+    /// `wait` and the quarks that [`Meaning::signals`] returns have no constants.
     pub(super) fn constants(&self) -> TokenStream {
         let signals = self.signals();
         let quarks = (0..).map(QuarkId).zip(self.machine.quarks()).zip(&self.constants);
@@ -66,8 +66,8 @@ impl Meaning<'_> {
         quote!(#(#constants)*)
     }
 
-    /// Returns the quarks that need no constants of their own: signals, which are parts of comparisons, and comparisons
-    /// of `t` and `way`, which the machine evaluates.
+    /// Returns the quarks that need no constants of their own. These are signals, which are parts of comparisons, and
+    /// comparisons of `t` and `way`, which the machine evaluates.
     fn signals(&self) -> BTreeSet<QuarkId> {
         let mut signals = BTreeSet::new();
         let mut in_conditions = BTreeSet::new();
@@ -89,7 +89,7 @@ impl Meaning<'_> {
         signals
     }
 
-    /// Emits `impl Plan for LabTour`, by which the machine evaluates the plan.
+    /// Emits `impl Plan for LabTour`, with which the machine evaluates the plan.
     fn implementation(&self, plan: &Ident, paths: Option<&TokenStream>) -> TokenStream {
         let slots = Literal::usize_unsuffixed(self.machine.sizes().slots);
         let (entered, begins) = entries(self.machine);
@@ -130,8 +130,8 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn next`, which evaluates the plan's own interrupt, and then, in an arm for each atom, the interrupts of
-    /// the enclosing scopes, the atom's interrupt, and the completion of its law.
+    /// Emits `fn next`. This function evaluates the plan's own interrupt first. Then, in a match arm for each atom, it
+    /// evaluates the interrupts of the enclosing scopes, the atom's interrupt, and the completion of its law.
     pub(super) fn next(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let (variant, element) = (atom_variant(atom.index()), atom.element());
@@ -162,7 +162,7 @@ impl Meaning<'_> {
     }
 }
 
-/// Emits the call of a scope's function, which ends the turn's evaluation if that scope or an enclosing one ends.
+/// Emits a call of a scope's function. If this scope or an enclosing one ends, the call ends the turn's evaluation.
 fn enclosing_first(function: &Ident) -> TokenStream {
     quote! {
         if let Some(ending) = #function(cursor, y, t) { return Some(ending); }

@@ -12,8 +12,8 @@ use super::scopes::nanometers;
 use crate::fsm::{self, Machine};
 use crate::plan::{Quark, QuarkId};
 
-/// Emits `static OPERANDS`: the conditions of a plan that is emitted as code, for reports of the operands that have
-/// fired.
+/// Emits `static OPERANDS`. It contains the conditions of a plan that is emitted as code, so that reports can show the
+/// operands that have fired.
 pub(super) fn conditions(machine: &Machine) -> TokenStream {
     let rows = fsm::rows(machine);
     let conditions = rows.guards.iter().map(|guard| row(&guard.condition, machine, None));
@@ -85,7 +85,7 @@ pub(super) fn row(
     quote!(runtime::Condition::#variant)
 }
 
-/// Emits an interrupt as a variant of its alphabet's enum `AnyInterrupt`.
+/// Emits an interrupt as a variant of the enum `AnyInterrupt` of its alphabet.
 fn interrupt(id: QuarkId, quarks: &[Quark]) -> TokenStream {
     let quark = &quarks[id.0 as usize];
     let Some(comparison) = &quark.comparison else { return variant("AnyInterrupt", quark, quarks) };
@@ -95,7 +95,7 @@ fn interrupt(id: QuarkId, quarks: &[Quark]) -> TokenStream {
     quote!(robot::AnyInterrupt::Comparison(#comparison))
 }
 
-/// Emits a quark as a variant of its alphabet's enum: `robot::AnyControl::Go(robot::Go::new(…))`.
+/// Emits a quark as a variant of an enum of its alphabet: `robot::AnyControl::Go(robot::Go::new(…))`.
 pub(super) fn variant(any: &str, quark: &Quark, quarks: &[Quark]) -> TokenStream {
     let any = quote::format_ident!("{any}");
     let kind = quark_type(&quark.name, quark.overload);

@@ -13,7 +13,8 @@ use crate::fsm::Atom;
 use crate::plan::frame_text;
 
 impl Meaning<'_> {
-    /// Emits `enum Running`: the law of the current atom with its state, and the function that creates the law.
+    /// Emits `enum Running`, which contains the law of the current atom with its state, and the function that creates
+    /// the law.
     pub(super) fn running(&self) -> TokenStream {
         let variants = self.machine.atoms().map(|atom| {
             let kind = quark_type(&atom.law().name, atom.law().overload);
@@ -40,9 +41,9 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn start`, which creates the law of the atom that is entered. A law may take kilobytes, so each arm
-    /// assigns the law that it creates: the law is then on the stack only once, and on a microcontroller only while it
-    /// is created.
+    /// Emits `fn start`, which creates the law of the atom that is entered. A law may need kilobytes of memory. Each
+    /// match arm therefore assigns the law that it creates, so that the law is on the stack only once, and on a
+    /// microcontroller only while it is being created.
     fn start(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let number = Literal::usize_unsuffixed(atom.index());
@@ -64,9 +65,9 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn enter`, which starts the law of the atom that is entered. Where the stack is large, the law is created
-    /// outside the plan and then moved: LLVM turns small laws into a table, whereas arms that write to the plan became
-    /// copies of the turn's loop, with twice the instructions.
+    /// Emits `fn enter`, which starts the law of the atom that is entered. If the stack is large, the law is created
+    /// outside the plan and then moved, because LLVM then converts small laws to a table. If match arms wrote to the
+    /// plan, LLVM would copy the turn's loop into them, with twice the number of instructions.
     pub(super) fn enter() -> TokenStream {
         quote! {
             #[inline(always)]
@@ -82,7 +83,7 @@ impl Meaning<'_> {
         }
     }
 
-    /// Emits `fn stalled`, by which the law of the current atom reports its progress; `None` for a plan without
+    /// Emits `fn stalled`, with which the law of the current atom reports its progress; `None` for a plan without
     /// `stuck`.
     pub(super) fn stalled(&self) -> Option<TokenStream> {
         let variants = self.machine.atoms().map(|atom| atom_variant(atom.index()));
@@ -112,15 +113,15 @@ impl Meaning<'_> {
     }
 }
 
-/// Writes an atom for a comment: `FRAME 90 (Atom (bumper) stop)`. Rust allows neither a lone carriage return nor
-/// characters that reverse text in a comment.
+/// Returns the text of an atom for use in a comment: `FRAME 90 (Atom (bumper) stop)`. Rust allows neither a lone
+/// carriage return nor characters that reverse text in a comment.
 fn atom_doc(atom: Atom<'_>) -> String {
     let interrupt = atom.element().interrupt().filter(|interrupt| !interrupt.removed);
     let condition = interrupt.map_or("null", |interrupt| &interrupt.text);
     format!("{}(Atom ({}) {})", frame_text(atom.frame()), Printable(condition), Printable(&atom.law().text))
 }
 
-/// Emits `begin`, or `begin.turned(…)` in a turned frame.
+/// Emits `begin` or, for a turned frame, `begin.turned(…)`.
 fn beginning(frame: f64) -> TokenStream {
     if frame == 0.0 {
         return quote!(begin);

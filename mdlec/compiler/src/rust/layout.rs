@@ -1,5 +1,5 @@
-//! Formats Rust code, and formats long lists in pieces, so that only a small part is parsed and formatted at a time,
-//! whatever the length of the plan.
+//! Formats Rust code. Long lists are formatted in pieces, so that only a small part is parsed and formatted at a time,
+//! even if the plan is long.
 
 use std::mem;
 
@@ -10,13 +10,13 @@ use quote::quote;
 const PIECE: usize = 256;
 /// Maximum number of columns of a line, as in prettyplease.
 const WIDTH: usize = 89;
-/// Placeholder for elements that are formatted separately, followed by a number. It is longer than a line, so
-/// that it gets a line of its own, as the elements do.
+/// Placeholder for elements that are formatted separately, followed by a number. The placeholder is longer than a line,
+/// so it gets a line of its own, as the elements do.
 const STAND_IN: &str =
     "the_elements_of_a_long_list_which_are_laid_out_by_themselves_and_then_written_where_this_very_long_name_stands_";
 
 /// Returns the text of a file, with an empty line after each item of the file and of its module. A long list has one
-/// element per line, or as many numbers per line as fit.
+/// element per line; if the elements are numbers, a line contains as many as fit.
 pub(super) fn file_text(file: TokenStream) -> String {
     let mut lists = Vec::new();
     let text = pretty(with_gaps(file, &mut lists));
@@ -35,7 +35,8 @@ pub(super) fn file_text(file: TokenStream) -> String {
     spaced
 }
 
-/// Replaces the elements of each long list in `tokens` by a placeholder, and appends the elements to `lists` in pieces.
+/// Replaces the elements of each long list in `tokens` with a placeholder, and appends the elements to `lists` in
+/// pieces.
 fn with_gaps(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
     let tokens = tokens.into_iter().map(|token| match token {
         TokenTree::Group(group) => {
@@ -51,8 +52,8 @@ fn with_gaps(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStr
     tokens.collect()
 }
 
-/// Returns the content of a list's brackets. If the list is long, moves the content to `lists`, and returns a
-/// placeholder.
+/// Returns the content of a list's brackets. If the list is long, moves the content to `lists` and returns a
+/// placeholder instead.
 fn elements(inside: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
     let mut pieces = Vec::new();
     let (mut piece, mut commas) = (Vec::new(), 0);
@@ -77,13 +78,13 @@ fn stand_in(number: usize) -> TokenStream {
     TokenTree::from(Ident::new(&format!("{STAND_IN}{number}"), Span::call_site())).into()
 }
 
-/// Returns the number of the list whose placeholder is on a line; `None` for a line without a placeholder.
+/// Returns the index of the list whose placeholder is on a line; `None` for a line without a placeholder.
 fn list(line: &str) -> Option<usize> {
     // prettyplease writes no comma after the last argument of a macro.
     line.trim_start().strip_prefix(STAND_IN)?.trim_end_matches(',').parse().ok()
 }
 
-/// Writes the elements of a list in the place of the line with its placeholder.
+/// Writes the elements of a list in place of the line that contains its placeholder.
 fn write_list(pieces: Vec<TokenStream>, line: &str, text: &mut String) {
     let indent = &line[..line.len() - line.trim_start().len()];
     match pieces.iter().map(numbers).collect::<Option<Vec<_>>>() {
@@ -97,7 +98,7 @@ fn numbers(elements: &TokenStream) -> Option<Vec<String>> {
     literals(elements.clone()).filter(|numbers| !numbers.iter().any(|number| number.starts_with('"')))
 }
 
-/// Writes numbers, as many in each line as fit.
+/// Writes numbers; each line contains as many as fit.
 fn write_numbers(numbers: &[String], indent: &str, text: &mut String) {
     let mut line = indent.to_owned();
     for number in numbers {
@@ -114,7 +115,7 @@ fn write_numbers(numbers: &[String], indent: &str, text: &mut String) {
     write_line(&line, text);
 }
 
-/// Writes formatted elements in the place of the line with their placeholder.
+/// Writes formatted elements in place of the line that contains their placeholder.
 fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     let indent = line.len() - line.trim_start().len();
     if let Some(plain) = strings(&elements).or_else(|| calls(&elements, WIDTH.saturating_sub(indent))) {
@@ -133,21 +134,21 @@ fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
 }
 
 /// Returns the elements as text if all are string literals; `None` otherwise. String literals are written unchanged,
-/// because parsing them would take the longest.
+/// because parsing them would take most of the time.
 fn strings(elements: &TokenStream) -> Option<Vec<String>> {
     let tokens = elements.clone().into_iter().filter(|token| !is_comma(token)).map(|token| token.to_string());
     tokens.map(|token| token.starts_with('"').then_some(token)).collect()
 }
 
-/// Returns the elements as text if all are calls that are no longer than `width` with their commas; `None` otherwise.
-/// The tables of a machine are such lists.
+/// Returns the elements as text if all are calls and none is longer than `width`, including its comma; `None`
+/// otherwise. The tables of a machine are such lists.
 fn calls(elements: &TokenStream, width: usize) -> Option<Vec<String>> {
     let calls = plain(elements.clone())?;
     calls.iter().all(|call| call.ends_with(')') && call.len() < width).then_some(calls)
 }
 
-/// Returns the elements as text if all are literals, paths, arrays of these, or calls of paths with such arguments;
-/// `None` otherwise.
+/// Returns the elements as text if each is a literal, a path, an array of these, or a call of a path with such
+/// arguments; `None` otherwise.
 fn plain(elements: TokenStream) -> Option<Vec<String>> {
     let mut texts = Vec::new();
     let mut text = String::new();
@@ -186,8 +187,7 @@ fn write_line(line: &str, text: &mut String) {
     text.push('\n');
 }
 
-/// Returns the formatted text of a file. If the tokens are not valid Rust, the text is a compile error for rustc to
-/// report.
+/// Returns the formatted text of a file. If the tokens are not valid Rust, the text makes rustc report an error.
 fn pretty(file: TokenStream) -> String {
     syn::parse2(file).map_or_else(|error| error.into_compile_error().to_string(), |file| prettyplease::unparse(&file))
 }

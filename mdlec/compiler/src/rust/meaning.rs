@@ -11,8 +11,8 @@ pub(super) struct Meaning<'a> {
     pub(super) machine: &'a Machine,
     /// Name of the constant of each quark.
     pub(super) constants: Vec<Ident>,
-    /// Name of the function of each element that is a scope with an interrupt that can fire; `None` for atoms
-    /// and all other elements.
+    /// Name of the function for each element that is a scope and whose interrupt can fire; `None` for atoms and all
+    /// other elements.
     functions: Vec<Option<Ident>>,
 }
 
@@ -28,7 +28,7 @@ impl<'a> Meaning<'a> {
         Self { machine, constants, functions: functions.collect() }
     }
 
-    /// Returns the name of the function of an element; `None` if the element has none.
+    /// Returns the name of the function for an element; `None` if the element has no function.
     pub(super) fn function(&self, element: Element<'_>) -> Option<&Ident> {
         self.functions.get(element.index())?.as_ref()
     }

@@ -1,8 +1,9 @@
-//! Emits a plan's machine as a Rust file; each function in this module emits one construct of the file. See
+//! Emits a plan's machine as a Rust file. Each function in this module emits one construct of the file. See
 //! docs/src/reference/generated_code.md, 4.
 //!
 //! The file is one Rust module. It contains the conditions and laws of scopes and atoms, as inline code or as table
-//! rows, and the machine's tables. Its size grows with the text of the plan, and does not depend on loop counts.
+//! rows, and the machine's tables. The size of the file grows with the text of the plan, and does not depend on loop
+//! counts.
 
 mod arguments;
 mod bind;
@@ -32,10 +33,10 @@ use crate::plan::Nondegenerate;
 pub use bind::bind;
 pub use names::plan_type;
 
-/// Content of the head of an emitted file, and the source texts to which the code refers.
+/// Content of an emitted file's head, and the source texts to which the code refers.
 #[derive(Debug, Clone, Copy)]
 pub struct Header<'a> {
-    /// Texts of the plan and of the files that it uses, for reports.
+    /// Texts of the plan and of the files that it uses; reports need them.
     pub sources: &'a Sources,
     /// Name of the plan's file, without folders.
     pub file: &'a str,
@@ -48,20 +49,20 @@ pub struct Header<'a> {
 pub enum Shape {
     /// Inline code for each atom and scope, which has the fastest turn and is easy to read.
     Code,
-    /// Table rows, which rustc compiles almost at once, but which need lookups in every turn. Used for long plans and
+    /// Table rows. rustc compiles them almost at once, but they need lookups in every turn. Used for long plans, and
     /// for plans with memories.
     Rows,
 }
 
 impl Shape {
-    /// Maximum number of scopes, loops and atoms of a plan that is emitted as inline code and not as tables:
-    /// about as many as rustc compiles in half a second.
+    /// Maximum number of scopes, loops and atoms in a plan that is emitted as inline code instead of tables. rustc
+    /// compiles about this number in half a second.
     const CODE: usize = 64;
-    /// Maximum total number of condition parts in a plan that is emitted as inline code; rustc needs about half a
-    /// second more for this many.
+    /// Maximum total number of parts of conditions in a plan that is emitted as inline code. rustc needs about half a
+    /// second more for this number.
     const PARTS: usize = 512;
 
-    /// Returns the shape that suits the size of a plan.
+    /// Returns the shape for a plan, which depends on the plan's size.
     #[must_use]
     pub fn of(machine: &Machine) -> Self {
         let is_short = machine.elements().len() <= Self::CODE && parts(machine) <= Self::PARTS;
@@ -69,14 +70,14 @@ impl Shape {
     }
 }
 
-/// Maximum number of scopes, loops, atoms and parts of conditions of an emitted plan: rustc takes minutes for a larger
-/// plan.
+/// Maximum number of scopes, loops, atoms and parts of conditions in an emitted plan. rustc would need minutes for a
+/// larger plan.
 const EMITTED: usize = 1 << 18;
 
 /// Checks that a plan is not too large to be emitted.
 ///
 /// # Errors
-/// Fails with E0501 for a plan that rustc would compile for minutes.
+/// Fails with E0501 for a plan for which rustc would need minutes.
 pub fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     let plan = plan.plan();
     let (brackets, parts) = plan.parts().fold((0_usize, 0_usize), |(brackets, parts), part| {
@@ -97,8 +98,8 @@ fn parts(machine: &Machine) -> usize {
     machine.elements().filter_map(Element::interrupt).map(|interrupt| interrupt.condition.parts()).sum()
 }
 
-/// Writes the file in the shape that suits its size. The text depends only on the arguments and on the version
-/// of the compiler.
+/// Writes the file in the shape that the plan's size determines. The text depends only on the arguments and on the
+/// version of the compiler.
 #[must_use]
 pub fn emit(machine: &Machine, header: Header<'_>, alphabet: &Alphabet) -> String {
     emit_as(Shape::of(machine), machine, header, alphabet)
@@ -143,7 +144,7 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
     format!("{}{}", heading(header, alphabet), layout::file_text(file))
 }
 
-/// Emits an assertion that fails to compile if the target is bound to another alphabet than the alphabet against which
+/// Emits an assertion that does not compile if the target was built with an alphabet other than the one against which
 /// the plan was checked.
 fn same_alphabet(alphabet: &Alphabet) -> TokenStream {
     let hash = bind::hash(alphabet);

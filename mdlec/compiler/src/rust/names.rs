@@ -10,7 +10,7 @@ const TYPES: &[&str] = &[
     "At", "Atom", "Begin", "Bracket", "Cursor", "Debug", "Default", "FnMut", "Fsm", "Input", "Nanos", "None", "Option",
     "Output", "Plan", "Running", "Self", "Some",
 ];
-/// Names of a bound alphabet in addition to its quarks, and names of Rust that its text uses.
+/// Names in a bound alphabet other than the names of its quarks, and Rust names that its text uses.
 const BOUND: &[&str] = &[
     "Input",
     "Output",
@@ -28,35 +28,35 @@ const BOUND: &[&str] = &[
 ];
 /// Names of the constants of every emitted plan.
 const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES", "OPERANDS", "SOURCE"];
-/// Names of an emitted plan's functions, arguments and variables, which other functions must not hide, and a keyword
+/// Names of an emitted plan's functions, arguments and variables, which other functions must not shadow, and a keyword
 /// that syn does not know yet.
 const FUNCTIONS: &[&str] = &["gen", "cursor", "y", "t", "tell", "law", "atom", "begin", "scope"];
 
-/// Returns the name of a plan's type: the plan's name in camel case.
+/// Returns the name of a plan's type, which is the plan's name in camel case.
 #[must_use]
 pub fn plan_type(plan: &str) -> String {
     let name = camel_case(plan);
     if TYPES.contains(&name.as_str()) { format!("{name}Plan") } else { name }
 }
 
-/// Returns the name of a quark's type in its target's crate: the quark's name in camel case, with a number for
-/// further declarations of the same name: `GoAvoid`, `GoAvoid2`.
+/// Returns the name of a quark's type in its target's crate. This is the quark's name in camel case, followed by a
+/// number for further declarations of the same name: `GoAvoid`, `GoAvoid2`.
 pub(super) fn quark_type(name: &str, overload: usize) -> Ident {
     let name = camel_case(name);
     let name = if BOUND.contains(&name.as_str()) { format!("{name}Quark") } else { name };
     if overload == 0 { format_ident!("{name}") } else { format_ident!("{name}{}", overload + 1) }
 }
 
-/// Returns the name of the variant that holds the law of an atom, numbered as written, from 1.
+/// Returns the name of the variant for the law of an atom; atoms are numbered from 1 in the order of the plan's text.
 pub(super) fn atom_variant(atom: usize) -> Ident {
     format_ident!("Atom{}", atom + 1)
 }
 
-/// Names that must differ from each other.
+/// A set of names that differ from each other.
 #[derive(Debug)]
 pub(super) struct Distinct {
     names: BTreeSet<String>,
-    /// The last number given to each name, so that the search for the next one is short.
+    /// For each name, the last number that was appended to it; it shortens the search for the next number.
     numbers: BTreeMap<String, usize>,
 }
 
@@ -71,7 +71,8 @@ impl Distinct {
         Self::beside(FUNCTIONS)
     }
 
-    /// Returns the names that a function for quarks cannot have: a keyword, and the functions that make rows.
+    /// Returns the names that a function for a quark cannot have: a keyword, and the names of the functions that create
+    /// rows.
     pub(super) fn quark_functions() -> Self {
         Self::beside(&["gen", "guard", "law", "follows", "degrees"])
     }
@@ -85,8 +86,7 @@ impl Distinct {
         Self { names: names.iter().map(|name| (*name).to_owned()).collect(), numbers: BTreeMap::new() }
     }
 
-    /// Returns the name of the constant of a quark with its arguments, derived from the quark text:
-    /// `GO_0_0_36`.
+    /// Returns a name for the constant of a quark with its arguments, derived from the quark text: `GO_0_0_36`.
     pub(super) fn constant(&mut self, quark_text: &str) -> Ident {
         let words = quark_text
             .replace('-', "minus_")
@@ -94,7 +94,7 @@ impl Distinct {
         self.distinct(&snake_case(&words).to_ascii_uppercase())
     }
 
-    /// Returns the name of the function that checks if a scope or an enclosing scope has ended, derived from the
+    /// Returns a name for the function that checks whether a scope or an enclosing scope has ended, derived from the
     /// scope's name.
     pub(super) fn scope_function(&mut self, scope: &str) -> Ident {
         let name = if scope.is_empty() { "unnamed".to_owned() } else { snake_case(scope) };
@@ -102,14 +102,14 @@ impl Distinct {
         self.distinct(&name)
     }
 
-    /// Returns the name of a quark's parameter, derived from its name in the alphabet.
+    /// Returns a name for a quark's parameter, derived from the parameter's name in the alphabet.
     pub(super) fn parameter(&mut self, name: &str) -> Ident {
         let name = snake_case(name);
         let name = if syn::parse_str::<Ident>(&name).is_ok() { name } else { format!("{name}_") };
         self.distinct(&name)
     }
 
-    /// Returns `name`, or the first of `name_2`, `name_3`, … that is not in use.
+    /// Returns `name` if it is not in use, or else the first unused name among `name_2`, `name_3`, ….
     fn distinct(&mut self, name: &str) -> Ident {
         let mut distinct = name.to_owned();
         while !self.names.insert(distinct.clone()) {
@@ -156,7 +156,7 @@ fn snake_case(name: &str) -> String {
     if snake.starts_with(|letter: char| letter.is_ascii_alphabetic()) { snake } else { format!("scope_{snake}") }
 }
 
-/// Returns the non-empty parts of `name` between underscores, joined by `joint`.
+/// Returns the non-empty parts of `name` between underscores, joined with `joint`.
 fn words(name: &str, joint: char) -> String {
     let parts: Vec<_> = name.split('_').filter(|part| !part.is_empty()).collect();
     parts.join(&joint.to_string())

@@ -1,5 +1,5 @@
-//! Emits functions that create the quarks in a plan's rows, because rustc takes half as long for the call of a function
-//! as for the constructors of a quark and of the types around it.
+//! Emits functions that create the quarks in a plan's rows. rustc compiles the call of such a function in half the time
+//! that it needs for the constructors of a quark and of the enclosing types.
 
 use std::collections::BTreeSet;
 
@@ -15,11 +15,11 @@ use crate::alphabet::{Alphabet, DeclarationKind};
 use crate::fsm::{Machine, Rows};
 use crate::plan::Quark;
 
-/// The quarks of an alphabet that a plan's rows contain, with their functions.
+/// The quarks that a plan's rows use, each with the generated function that constructs it.
 pub(super) struct QuarkFunctions<'a>(Vec<Bound<'a>>);
 
 impl<'a> QuarkFunctions<'a> {
-    /// Names a function for each quark that is a condition, an operand or a law by itself.
+    /// Chooses a function name for each quark that is a condition, an operand or a law by itself.
     pub(super) fn new(machine: &Machine, rows: &Rows, alphabet: &'a Alphabet) -> Self {
         let conditions = rows.guards.iter().map(|guard| &guard.condition).chain(&rows.operands);
         let interrupts = conditions.filter_map(|condition| match condition {
@@ -55,7 +55,7 @@ impl<'a> QuarkFunctions<'a> {
         quote!(#(#functions)*)
     }
 
-    /// Emits the call that makes a quark: `go(runtime::MetersPerSecond(0.2), …)`; `None` for a comparison, and for a
+    /// Emits the call that creates a quark: `go(runtime::MetersPerSecond(0.2), …)`; `None` for a comparison, and for a
     /// quark without a function.
     pub(super) fn call(&self, quark: &Quark) -> Option<TokenStream> {
         if quark.comparison.is_some() {

@@ -1,5 +1,5 @@
-//! Emits a plan as table rows, in which the run-time system looks up conditions and laws, for plans that are too long
-//! for inline code or have memories.
+//! Emits a plan as table rows, in which the run-time system looks up conditions and laws. This form is used for plans
+//! that are too long for inline code, and for plans with memories.
 
 use mdle_runtime::{Fact, Follows, Guard, LawRow, MarkRow, Radians};
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -13,7 +13,7 @@ use super::tables::entries;
 use crate::alphabet::Alphabet;
 use crate::fsm::{self, Machine, Rows};
 
-/// Emits the plan's type, which delegates to the runtime's type, and its rows.
+/// Emits the rows of a plan, and the plan's type, which delegates to the type of the run-time system.
 pub(super) fn machine(
     plan: &Ident,
     doc: &str,
@@ -91,7 +91,7 @@ pub(super) fn machine(
     }
 }
 
-/// Emits the function by which the law of a plan with `stuck` reports its progress; `None` for a plan without
+/// Emits the function with which the law of a plan with `stuck` reports its progress; `None` for a plan without
 /// `stuck`.
 fn stalled(machine: &Machine) -> Option<TokenStream> {
     asks_for_progress(machine).then(|| {
@@ -102,7 +102,7 @@ fn stalled(machine: &Machine) -> Option<TokenStream> {
     })
 }
 
-/// Emits the functions by which the machine informs a plan with memories of each transition and of the end of a turn;
+/// Emits the functions with which the machine informs a plan with memories of each transition and of the end of a turn;
 /// `None` for a plan without memories.
 fn memory_updates(machine: &Machine) -> Option<TokenStream> {
     (machine.sizes().memories > 0).then(|| {
@@ -123,7 +123,7 @@ fn memory_updates(machine: &Machine) -> Option<TokenStream> {
     })
 }
 
-/// Emits the type of the plan's memory, if the plan has one, and the expression that creates the plan.
+/// Emits the type of the plan's memory (`None` for a plan without memories), and the expression that creates the plan.
 fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, TokenStream) {
     let slots = Literal::usize_unsuffixed(machine.sizes().slots);
     let slots = quote!(#begins, [0; #slots]);
@@ -136,8 +136,8 @@ fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, Toke
     (Some(quote!(, runtime::Memories<[bool; #size]>)), new)
 }
 
-/// Emits `static ROWS`: the condition of each bracket with its operands, and the law of each atom, as calls of the
-/// short functions before it.
+/// Emits `static ROWS`, which contains the condition of each bracket with its operands, and the law of each atom. The
+/// rows are calls of the short functions that precede them.
 fn rows(machine: &Machine, alphabet: &Alphabet, paths: Option<&TokenStream>) -> TokenStream {
     let rows = fsm::rows(machine);
     let functions = QuarkFunctions::new(machine, &rows, alphabet);
@@ -176,7 +176,7 @@ fn rows(machine: &Machine, alphabet: &Alphabet, paths: Option<&TokenStream>) -> 
     }
 }
 
-/// Emits the functions that make rows, without those that no row calls.
+/// Emits the functions that create rows; functions that no row calls are omitted.
 fn row_functions(rows: &Rows) -> TokenStream {
     let follows = rows.guards.iter().any(|guard| guard.follows.is_some()).then(|| {
         quote! {
@@ -220,8 +220,8 @@ fn follower(Follows { atom, from, to }: Follows) -> TokenStream {
     quote!(follows(#atom, #from, #to))
 }
 
-/// Emits the angle by which a frame is turned: `degrees(90.0)` if a number of degrees with at most six decimals
-/// converts to exactly this angle, and radians otherwise.
+/// Emits the angle by which a frame is turned. If a number of degrees with at most six decimals converts to exactly
+/// this angle, emits `degrees(90.0)`; otherwise, emits radians.
 fn turn(Radians(radians): Radians) -> TokenStream {
     let Some(degrees) = exact_degrees(radians).map(number) else { return angle(radians) };
     quote!(degrees(#degrees))

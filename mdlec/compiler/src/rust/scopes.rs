@@ -1,4 +1,4 @@
-//! Emits the ends of scopes as inline code: interrupts as expressions, and a function for each scope that first
+//! Emits the ends of scopes as inline code. Interrupts become expressions; each scope gets a function that first
 //! evaluates the enclosing scope.
 
 use mdle_runtime::Printable;
@@ -33,21 +33,21 @@ impl Meaning<'_> {
         quote!(#(#functions)*)
     }
 
-    /// Returns the function of the nearest scope that encloses this element and has an interrupt; `None` if there is no
-    /// such scope except the plan, whose own interrupt is evaluated first.
+    /// Returns the function of the nearest scope that encloses this element and has an interrupt; `None` if the plan is
+    /// the only such scope, because the plan's interrupt has already been evaluated.
     pub(super) fn around(&self, element: Element<'_>) -> Option<&Ident> {
         let mut enclosing = element.outwards().skip(1).filter(|enclosing| enclosing.parent().is_some());
         enclosing.find_map(|enclosing| self.function(enclosing))
     }
 
-    /// Emits the expression that is true when the interrupt of this element has fired; `None` if it never
+    /// Emits an expression that is true when the interrupt of this element has fired; `None` if the interrupt never
     /// fires.
     pub(super) fn condition(&self, element: Element<'_>) -> Option<TokenStream> {
         let condition = element.condition();
         (*condition != Condition::Null).then(|| self.expression(condition, level(element)))
     }
 
-    /// Emits the expression that is true when a condition has fired; `level` is the level of the condition's scope.
+    /// Emits an expression that is true when a condition has fired; `level` is the level of the condition's scope.
     fn expression(&self, condition: &Condition, level: u16) -> TokenStream {
         let operand = |operand: &Condition| {
             let inner = self.expression(operand, level);
@@ -98,8 +98,8 @@ pub(super) fn asks_for_progress(machine: &Machine) -> bool {
     machine.elements().any(|element| element.condition().lasts())
 }
 
-/// Emits the end of an element: `Cause::Fired(level).then(…)`, without `then` if the next atom depends on a
-/// loop's counter.
+/// Emits the end of an element: `Cause::Fired(level).then(…)`, without `then` if the next atom depends on the counter
+/// of a loop.
 pub(super) fn ending(element: Element<'_>, cause: &TokenStream) -> TokenStream {
     let level = level(element);
     match element.follows().map(follows) {
@@ -120,8 +120,8 @@ pub(super) fn nanometers(length: u64) -> TokenStream {
     quote!(runtime::Nanometers(#length))
 }
 
-/// Emits operands joined by an operator, in groups in parentheses if there are many: Rust nests a chain of operators to
-/// the left, and compilers recurse into it.
+/// Emits operands joined by an operator. Many operands are divided into groups in parentheses, because Rust nests a
+/// chain of operators to the left, and compilers recurse into it.
 fn operator_chain(operands: Vec<TokenStream>, operator: &TokenStream) -> TokenStream {
     const GROUP: usize = 64;
     let join = |operands: &[TokenStream]| {

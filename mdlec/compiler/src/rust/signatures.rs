@@ -1,5 +1,5 @@
-//! Emits the signatures that a target's crate has to implement for an alphabet's quarks, with a type for each
-//! unit.
+//! Emits the signatures that a target's crate has to implement for the quarks of an alphabet. Each unit has its own
+//! type.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};

@@ -1,4 +1,4 @@
-//! Emits the texts of a plan as written, with their lines, as constants.
+//! Emits the texts of a plan as written, and their line numbers, as constants.
 
 use mdle_runtime::{SourceLine, ValueWords};
 use proc_macro2::{Literal, TokenStream};
@@ -8,7 +8,7 @@ use super::arguments::number;
 use super::texts::text_list;
 use crate::fsm::PlanWords;
 
-/// Emits `const SOURCE`: the texts of each bracket and of each operand, for reports.
+/// Emits `const SOURCE`, which contains the texts of each bracket and of each operand, for reports.
 pub(super) fn source(words: &PlanWords) -> TokenStream {
     let PlanWords { files, elements, operands } = words;
     let brackets = elements.iter().map(|bracket| row(bracket.at, bracket.first, bracket.count));
@@ -36,7 +36,7 @@ pub(super) fn source(words: &PlanWords) -> TokenStream {
     }
 }
 
-/// Emits `[0, 7, 1, 2]`: file, line, number of the first operand or value, and number of operands or values.
+/// Emits `[0, 7, 1, 2]`: file, line, index of the first operand or value, and number of operands or values.
 fn row(SourceLine { file, line }: SourceLine, first: u32, count: u32) -> TokenStream {
     let numbers = [u32::from(file), line, first, count].map(Literal::u32_unsuffixed);
     quote!([#(#numbers),*])

@@ -43,7 +43,8 @@ pub(super) fn tables(machine: &Machine) -> TokenStream {
     }
 }
 
-/// Emits `const HERE`: the frame of each atom that is inside a `FRAME here`; `None` for a plan without `FRAME here`.
+/// Emits `const HERE`, which contains the frame of each atom inside a `FRAME here`; `None` for a plan without `FRAME
+/// here`.
 fn frames(machine: &Machine) -> Option<TokenStream> {
     let frames = machine.frames().iter().map(|here| match here {
         Some(Here { level, turned }) => {
@@ -102,7 +103,7 @@ pub(super) fn follows(follows: Follows) -> TokenStream {
     quote!(runtime::Follows::new(#atom, #from, #to))
 }
 
-/// Emits the names of the path files that the laws replay, each once; `None` for a plan that replays no paths.
+/// Emits the names of the path files that the laws replay, each listed once; `None` for a plan that replays no paths.
 pub(super) fn paths(machine: &Machine, alphabet: &Alphabet) -> Option<TokenStream> {
     let files = fsm::replayed_files(machine, alphabet);
     let files = files.iter();

@@ -1,4 +1,4 @@
-//! Emits many short texts as one text, because rustc takes no longer for a long literal than for a short one.
+//! Emits many short texts as one long text, because rustc needs no more time for a long literal than for a short one.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;

@@ -1,12 +1,13 @@
-//! Writes messages about arithmetic, which MDLe does not have. The messages contain the result; values in foreign units
-//! are converted to units of MDLe.
+//! Writes messages about arithmetic, which MDLe does not have. The messages contain the result of the calculation;
+//! values in foreign units are converted to units of MDLe.
 
 use super::number::split;
 use super::source::{FileText, TextRange};
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Units that MDLe does not have: the names of each unit, its size in a unit of MDLe, and the name of the MDLe unit.
+/// Units that MDLe does not have. Each entry contains the names of the unit, its size in a unit of MDLe, and the name
+/// of this MDLe unit.
 const FOREIGN: &[(&[&str], f64, &str)] = &[
     (&["km/h", "kmh", "kph", "kmph"], 1.0 / 3.6, "m/s"),
     (&["mph", "mi/h"], 0.447_04, "m/s"),
@@ -28,14 +29,14 @@ const FOREIGN: &[(&[&str], f64, &str)] = &[
 /// Names of pi.
 const PI: [&str; 4] = ["pi", "PI", "Pi", "π"];
 
-/// Returns a number with a foreign unit as a number with a unit of MDLe; `None` if the unit is unknown.
+/// Converts a number with a foreign unit to a number with a unit of MDLe; `None` if the unit is unknown.
 pub(super) fn foreign_unit(number: &str, unit: &str) -> Option<String> {
     let (_, factor, ours) = FOREIGN.iter().find(|(names, _, _)| names.contains(&unit))?;
     Some(format!("{}{ours}", rounded(number.parse::<f64>().ok()? * factor)?))
 }
 
-/// Returns the result of an operation on two numbers, if MDLe can express it: at most one of them has a unit, or both
-/// have the same unit in a sum or difference.
+/// Returns the result of an operation on two numbers; `None` if MDLe cannot express it. MDLe can express it if at most
+/// one number has a unit, or if both numbers of a sum or difference have the same unit.
 pub(super) fn computed(left: &str, operator: &str, right: &str) -> Option<String> {
     let ((left, left_unit), (right, right_unit)) = (split(left), split(right));
     let is_unit = |unit: &str| unit.is_empty() || Unit::from_name(unit).is_some();
@@ -54,7 +55,7 @@ pub(super) fn computed(left: &str, operator: &str, right: &str) -> Option<String
     Some(format!("{}{unit}", rounded(value)?))
 }
 
-/// Returns the sum of a number with several units of one kind, such as `1h30min`, in the last of the units.
+/// Adds up a number with several units of one kind, such as `1h30min`. The result has the last of the units.
 pub(super) fn sum_of_units(number: &str, tail: &str) -> Option<String> {
     let text = format!("{number}{tail}");
     let (mut rest, mut sum, mut last): (&str, f64, Option<Unit>) = (&text, 0.0, None);
@@ -76,7 +77,7 @@ fn rounded(value: f64) -> Option<String> {
     (value.abs() < 1e9 && (rounded != 0.0 || value == 0.0)).then(|| rounded.to_string())
 }
 
-/// Returns the message about an arithmetic operator, if `found` is such an operator.
+/// Returns the message about an arithmetic operator; `None` if `found` is not such an operator.
 pub(super) fn arithmetic(source: FileText<'_>, found: &str, place: TextRange) -> Option<Diagnostic> {
     let operator = if matches!(found, "+" | "-" | "*" | "/" | "**") { found } else { return None };
     let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
@@ -153,7 +154,7 @@ fn negative_name(source: FileText<'_>, operator: &str, place: TextRange) -> Opti
     })
 }
 
-/// Reports parts and multiples of pi, such as `pi/2`, `2*pi` and `pi*0.5`, as the angles that they mean.
+/// Reports parts and multiples of pi, such as `pi/2`, `2*pi` and `pi*0.5`, and proposes the angles that they mean.
 fn part_of_pi(source: FileText<'_>, place: TextRange) -> Option<Diagnostic> {
     if source.slice(place) == "-" {
         // The sign and the operator after `pi` have the same message, which is reported once.
@@ -187,7 +188,7 @@ fn is_pi(text: &str) -> bool {
     PI.contains(&text)
 }
 
-/// Returns a name without hyphens for a plan's name with hyphens, such as `Return-Home`.
+/// Returns a name without hyphens that can replace a plan's name with hyphens, such as `Return-Home`.
 fn hyphenated(source: FileText<'_>, left: &str, operator: &str, right: &str, place: TextRange) -> Option<String> {
     let before = source.text.get(..place.start)?;
     let touches = before.ends_with(left) && source.text.get(place.end..)?.starts_with(right);

@@ -1,4 +1,4 @@
-//! Balances brackets before the grammar reads the tokens (docs/src/reference/language.md, 3.7). After this, every
+//! Balances brackets before the grammar parses the tokens (docs/src/reference/language.md, 3.7). Afterwards, every
 //! bracket has a partner, brackets are nested at most 256 deep, and no atom contains an atom.
 
 mod inside;
@@ -20,24 +20,24 @@ pub(super) const MAX_DEPTH: usize = 256;
 /// Tokens whose brackets match.
 #[derive(Debug, Default)]
 pub(super) struct Balanced<'s> {
-    /// Tokens with balanced brackets; inserted tokens have an empty place.
+    /// Tokens with balanced brackets. Inserted tokens have an empty place.
     pub(super) tokens: Vec<Token<'s>>,
     /// Doc comments, each with the index of the token that follows it.
     pub(super) docs: Vec<(usize, &'s str)>,
     /// Regions of the tokens; an error may affect all tokens of its region.
     pub(super) regions: Regions,
-    /// Lexical errors, and errors of the brackets.
+    /// Lexical errors, and errors about brackets.
     pub(super) diagnostics: Vec<Diagnostic>,
-    /// Names of files in `use` inside plans.
+    /// Names of files that a `use` inside a plan names.
     pub(super) uses: Vec<Name<'s>>,
     /// `true` if the text contains a brace that is never closed.
     is_open: bool,
-    /// `true` if the braces that are never closed have been closed where they seem to end.
+    /// `true` if braces that the text never closes have been closed where they seem to end.
     is_repaired: bool,
 }
 
-/// Balances the brackets of a text. Braces that are never closed are closed where the indentation shows their end or,
-/// if this leaves fewer errors, where their plan seems to end. A repair that adds errors is dropped.
+/// Balances the brackets of a text. A brace that is never closed is closed where the indentation shows its end or, if
+/// this leaves fewer errors, where its plan seems to end. A repair that causes more errors is discarded.
 pub(super) fn balance<'s>(source: FileText<'s>, lexed: &Lexed<'s>) -> Balanced<'s> {
     let (plain, ends) = pass(source, lexed, &BTreeMap::new());
     if !plain.is_open {
@@ -57,7 +57,7 @@ pub(super) fn balance<'s>(source: FileText<'s>, lexed: &Lexed<'s>) -> Balanced<'
 }
 
 /// Reads the tokens once, and closes open brackets before the tokens in `ends`. Also returns the tokens before which
-/// braces that are never closed seem to end.
+/// the braces that are never closed seem to end.
 fn pass<'s>(
     source: FileText<'s>,
     lexed: &Lexed<'s>,
@@ -113,18 +113,20 @@ struct OpenBracket {
     kind: BracketKind,
     /// Place of the bracket; `None` if it was inserted.
     place: Option<TextRange>,
-    /// Index of the bracket in the text's tokens, or of the token before which it was inserted.
+    /// Index of the bracket among the text's tokens. For an inserted bracket, this is the index of the token before
+    /// which it was inserted.
     raw: usize,
-    /// Index of the message about a `)` in the place of the bracket's `}`; `None` if there is no such message.
+    /// Index of the message about a `)` that was written instead of the bracket's `}`; `None` if there is no such
+    /// message.
     stray: Option<usize>,
 }
 
-/// A run of consecutive closing brackets without opening brackets.
+/// A series of consecutive closing brackets without opening brackets.
 #[derive(Debug, Clone, Copy)]
 struct Strays {
-    /// Index of the message about the run.
+    /// Index of the message about the series.
     message: usize,
-    /// Index of the last bracket of the run.
+    /// Index of the last bracket in the series.
     last: usize,
     count: usize,
 }
@@ -136,16 +138,16 @@ struct Pass<'t, 's> {
     open: Vec<OpenBracket>,
     /// Number of open braces.
     braces: usize,
-    /// Last run of closing brackets without opening brackets.
+    /// Last series of closing brackets without opening brackets.
     strays: Option<Strays>,
     /// Byte offset up to which the text has been searched for line ends.
     reached: usize,
-    /// Tokens before which braces that are never closed seem to end.
+    /// Tokens before which the braces that are never closed seem to end.
     ends: BTreeSet<usize>,
 }
 
 impl<'s> Pass<'_, 's> {
-    /// Processes a token; returns `false` if no more tokens are to be read.
+    /// Processes a token. Returns `false` if no more tokens have to be read.
     fn token(&mut self, index: usize, token: Token<'s>) -> bool {
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are treated alike")]
         match token.kind {
@@ -267,7 +269,7 @@ impl<'s> Pass<'_, 's> {
         Some(open)
     }
 
-    /// Closes the innermost open bracket although the text has no closing bracket.
+    /// Closes the innermost open bracket, although the text contains no closing bracket for it.
     fn force(&mut self) -> Option<OpenBracket> {
         let kind = if self.open.last()?.kind == BracketKind::Brace { Tok::RBrace } else { Tok::RParen };
         self.balanced.regions.spoil();
@@ -275,7 +277,8 @@ impl<'s> Pass<'_, 's> {
         self.close(Token { kind, place: TextRange::new(end, end) })
     }
 
-    /// Closes all open brackets after the first `depth`, which must be parentheses, and reports them with one message.
+    /// Closes all open brackets except the first `depth`, and reports them in one message. The closed brackets must be
+    /// parentheses.
     fn force_down_to(&mut self, depth: usize, missing_at: TextRange, before: &str) {
         let mut unclosed = Vec::new();
         let mut atom = false;
@@ -302,7 +305,7 @@ impl<'s> Pass<'_, 's> {
         });
     }
 
-    /// Closes the atom in which another atom begins.
+    /// Closes an atom inside which another atom begins.
     fn close_atom(&mut self, at: TextRange) {
         let inside = self.open.iter().rev().take_while(|open| open.kind != BracketKind::Brace);
         if let Some(up) = inside.enumerate().filter(|(_, open)| open.kind == BracketKind::Atom).map(|(up, _)| up).last()
@@ -324,8 +327,8 @@ impl<'s> Pass<'_, 's> {
         true
     }
 
-    /// Returns `true` if a closing bracket continues a run of closing brackets without opening brackets; then the run's
-    /// message also covers it.
+    /// Returns `true` if a closing bracket continues a series of closing brackets without opening brackets. The series'
+    /// message then also covers this bracket.
     fn is_one_more(&mut self, index: usize, token: Token<'s>) -> bool {
         let is_alike = |last: usize| self.raw.get(last).is_some_and(|last| last.kind == token.kind);
         let strays = self.strays.as_mut().filter(|strays| strays.last + 1 == index && is_alike(strays.last));

@@ -1,5 +1,5 @@
-//! Removes elements that a syntax error has affected from the tree: the parser may have read other words as names, and
-//! later stages must not report these names. Elements outside the error's region remain.
+//! Removes from the tree the elements that a syntax error has affected. The parser may have read other words as names,
+//! and later stages must not report these names. Elements outside the error's region remain.
 
 use bumpalo::Bump;
 
@@ -9,7 +9,7 @@ use super::token::{Tok, Token};
 use super::tree::{Condition, ConditionNode, Element, Exec, File, Formal, Plan, Primary};
 use crate::diagnostic::Span;
 
-/// Removes nodes in regions with a reported error, and plans without a name, from the tree.
+/// Removes nodes in regions with a reported error from the tree, and plans without a name.
 pub(super) fn take_out<'s>(
     file: &mut File<'s>,
     source: FileText<'s>,

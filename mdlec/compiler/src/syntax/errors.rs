@@ -1,5 +1,5 @@
-//! Converts the parser's errors to messages, one for each region. Common mistakes have their own messages; all other
-//! messages name the expected and the unexpected tokens.
+//! Converts the parser's errors to messages; each region gets one message. Common mistakes have their own messages; all
+//! other messages name the expected and the unexpected tokens.
 
 use std::cell::OnceCell;
 
@@ -44,7 +44,7 @@ pub(super) fn diagnostics(
     diagnostics
 }
 
-/// Returns the indices of the tokens that the edits in a message replace.
+/// Returns the indices of the tokens that a message's edits replace.
 fn rewritten(source: FileText<'_>, tokens: &[Token<'_>], diagnostic: &Diagnostic) -> impl Iterator<Item = usize> {
     let edits = diagnostic.help.iter().filter_map(|help| help.edit.as_ref());
     let first = |edit: &Edit| {

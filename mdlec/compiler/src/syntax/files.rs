@@ -1,4 +1,4 @@
-//! Parses a file of plans and the files that it uses, each file once (docs/src/reference/language.md, 1).
+//! Parses a file of plans, and the files that it uses; each file is parsed once (docs/src/reference/language.md, 1).
 
 use std::collections::BTreeSet;
 
@@ -6,9 +6,10 @@ use super::tree::{Name, Plan};
 use super::{Arena, parse};
 use crate::diagnostic::{Code, Diagnostic, SourceId, sort};
 
-/// Finds and reads the files that plans use; no stage of the compiler reads a file itself.
+/// Finds and reads the files that plans use. No stage of the compiler reads a file itself.
 pub trait Loader {
-    /// Returns the file that `path` names in the file `from`. A file has one identifier, whichever path leads to it.
+    /// Returns the file to which `path` in the file `from` refers. A file always has the same identifier, even if
+    /// different paths lead to it.
     ///
     /// # Errors
     /// Returns the reason why the file cannot be read, in one line without a full stop.
@@ -18,7 +19,7 @@ pub trait Loader {
     fn text(&self, source: SourceId) -> &str;
 }
 
-/// A loader without files, for a text that uses no files.
+/// A loader for a text that uses no files.
 #[derive(Debug, Clone, Copy)]
 pub struct NoFiles;
 
@@ -32,12 +33,12 @@ impl Loader for NoFiles {
     }
 }
 
-/// The plans of a file and of the files that it uses.
+/// The plans of a file, and of the files that it uses.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Files<'s> {
-    /// Plans in order, the plans of the file itself first.
+    /// Plans in order; the plans of the file itself come first.
     pub plans: Vec<Plan<'s>>,
-    /// Number of plans of the file itself.
+    /// Number of plans in the file itself.
     pub own: usize,
     /// `true` if plans may be missing, because a used file or the head of a plan could not be read.
     pub is_incomplete: bool,
@@ -93,7 +94,8 @@ fn unusable(used: Name<'_>, reason: String) -> Diagnostic {
         .help("a path is looked up from the folder of the file that uses it")
 }
 
-/// Returns the diagnostic of a circular use: the last open file uses `source`, which is also open.
+/// Returns the diagnostic about a circular use; `None` if there is none. The last open file uses `source`, which is
+/// circular if `source` is also open.
 fn cycle(open: &[OpenFile<'_>], source: SourceId) -> Option<Diagnostic> {
     let from = open.iter().position(|file| file.source == source)?;
     let cycle = open.get(from..)?;

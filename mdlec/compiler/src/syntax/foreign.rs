@@ -1,5 +1,5 @@
-//! Reports words of other languages and misspelled keywords, with one message each, and replaces them by tokens with
-//! which parsing continues as if the plan were written in MDLe.
+//! Reports words of other languages and misspelled keywords, and replaces them with tokens, so that parsing continues
+//! as if the plan were written in MDLe. Each gets only one message.
 
 mod advice;
 mod loops;
@@ -15,14 +15,14 @@ use super::source::{FileText, TextRange};
 use super::token::{Tok, Token};
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Returns `true` if a name is probably meant as the keyword `Atom`.
+/// Returns `true` if a name probably stands for the keyword `Atom`.
 fn is_like_atom(name: &str) -> bool {
     (3..=5).contains(&name.len())
         && name.starts_with(['a', 'A'])
         && strsim::damerau_levenshtein(&name.to_ascii_lowercase(), "atom") <= 1
 }
 
-/// Reports words of other languages, and replaces them by tokens with which parsing continues.
+/// Reports words of other languages, and replaces them with tokens with which parsing can continue.
 pub(super) fn replace<'s>(source: FileText<'s>, lexed: &mut Lexed<'s>) {
     let is_foreign = |token: &Token<'_>| {
         let is_word = |name: &str| is_word(name) || is_like_atom(name) || is_like_loop(name);
@@ -93,12 +93,12 @@ struct Rewriting<'t, 's> {
     old: &'t [Token<'s>],
     /// Index of the closing bracket for each opening bracket.
     ends: BTreeMap<usize, usize>,
-    /// Names of the plans of this file, which may be words of other languages.
+    /// Names of the plans in this file, because these may also be words of other languages.
     plans: BTreeSet<&'s str>,
     new: Vec<Token<'s>>,
     /// Index of each original token among the new tokens.
     moved: Vec<usize>,
-    /// Open brackets, the innermost last.
+    /// Open brackets; the innermost comes last.
     open: Vec<OpenDelimiter>,
     /// Messages, each with the index of the new token after the reported text, and the place of that text.
     found: Vec<(usize, TextRange, Diagnostic)>,
@@ -107,11 +107,11 @@ struct Rewriting<'t, 's> {
 #[derive(Clone, Copy, PartialEq)]
 enum OpenDelimiter {
     Brace,
-    /// A brace that is read as a parenthesis.
+    /// A brace that is treated as a parenthesis.
     Rewritten,
     Parenthesis,
     Atom,
-    /// A square bracket that is read as the parenthesis of an atom.
+    /// A square bracket that is treated as the parenthesis of an atom.
     Bracket,
 }
 
@@ -199,14 +199,14 @@ impl<'s> Rewriting<'_, 's> {
         }
     }
 
-    /// Returns `true` if `name` begins a misspelled atom, such as `(atom (…`.
+    /// Returns `true` if `name` begins an atom with a misspelled keyword, such as `(atom (…`.
     fn is_atom(&self, at: usize, name: &str) -> bool {
         let is_open = |kind| matches!(kind, Some(Tok::LParen | Tok::TouchParen));
         is_like_atom(name) && !self.plans.contains(name) && is_open(self.before(at, 1)) && is_open(self.kind(at + 1))
     }
 
-    /// Reports a name that is a keyword of another language and not a plan of the file. Returns the index of the
-    /// original token at which to continue; `None` if the name was not reported.
+    /// Reports a name that is a keyword of another language and is not the name of a plan in the file. Returns the
+    /// index of the original token at which to continue; `None` if the name was not reported.
     fn word(&mut self, at: usize, name: &'s str) -> Option<usize> {
         let place = self.place(at, at);
         if self.is_atom(at, name) {
@@ -255,7 +255,8 @@ impl<'s> Rewriting<'_, 's> {
         Some(self.past_condition(at + 1))
     }
 
-    /// Returns the condition in the parentheses that open at `at`, if it is short and simple enough for a proposal.
+    /// Returns the condition in the parentheses that open at `at`; `None` if it is too long or too complex for a
+    /// proposal.
     fn condition_at(&self, at: usize) -> Option<&'s str> {
         let end = self.end_of(at).filter(|_| self.kind(at) != Some(Tok::LBrace))?;
         let inside = self.old.get(at + 1..end)?;
@@ -271,7 +272,7 @@ impl<'s> Rewriting<'_, 's> {
         (is_short && inside.iter().all(is_condition)).then_some(text)
     }
 
-    /// Skips the condition after a word; replaces the braces after the condition by parentheses.
+    /// Skips the condition after a word, and replaces the braces after the condition with parentheses.
     fn past_condition(&mut self, at: usize) -> usize {
         let mut next = at;
         if matches!(self.kind(at), Some(Tok::LParen | Tok::TouchParen)) && self.kind(at + 1) != Some(Tok::Atom) {

@@ -1,8 +1,8 @@
 //! Formats a text in the canonical layout: two spaces for each level, and one element per line in a scope with several
 //! elements.
 //!
-//! The tokens do not change, and every comment keeps its place among them. The tree only determines where lines may
-//! break.
+//! The formatter does not change the tokens, and every comment keeps its position among them. The tree only determines
+//! where lines may be broken.
 
 mod comments;
 mod lines;
@@ -26,8 +26,8 @@ const INDENT: usize = 2;
 /// Returns the text in the canonical layout.
 ///
 /// # Errors
-/// Returns the diagnostics if the text has errors: the parser then had to guess the structure, so the text is not
-/// formatted.
+/// Returns the diagnostics if the text has errors. Such a text is not formatted, because the parser had to guess its
+/// structure.
 pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     let arena = arena_for(text);
     let (_, found) = parse(id, text, &arena);
@@ -44,7 +44,7 @@ pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     Ok(layout.lines.text())
 }
 
-/// State of the formatter: the pieces to write, in order, and the lines written so far.
+/// State of the formatter: the remaining pieces, in order, and the lines that have been written so far.
 struct Layout<'s> {
     id: SourceId,
     pieces: Pieces<'s>,
@@ -74,7 +74,7 @@ impl Layout<'_> {
         self.boundary(Before::Close);
     }
 
-    /// Writes a plan, on one line if it is short.
+    /// Writes a plan. If the plan is short, it is written on one line.
     fn plan(&mut self, plan: &Plan<'_>) {
         let end = self.behind(plan.span);
         if breaks(plan) || !self.fits(end) {
@@ -103,7 +103,7 @@ impl Layout<'_> {
         self.flow(end);
     }
 
-    /// Writes the pieces before `elements`, and then each element on lines of its own.
+    /// Writes the pieces before `elements`, and then each element on separate lines.
     fn list(&mut self, elements: &[Element<'_>]) {
         let Some(first) = elements.first() else { return };
         self.flow(self.first(first.span));
@@ -161,7 +161,7 @@ impl Layout<'_> {
     }
 }
 
-/// Returns `true` if a plan takes several lines even if it is short.
+/// Returns `true` if a plan is written on several lines even if it is short.
 fn breaks(plan: &Plan<'_>) -> bool {
     plan.elements.len() > 1 || plan.elements.iter().any(is_broken)
 }

@@ -1,24 +1,25 @@
-//! Determines the meaning of a parenthesis after a plan's own name (docs/src/reference/language.md, 3.1): parameters,
-//! the condition, or the first element. The grammar could decide this only at the end of the parenthesis.
+//! Determines the meaning of a parenthesis after a plan's own name (docs/src/reference/language.md, 3.1). It can begin
+//! the parameters, the condition, or the first element. The grammar could decide this only at the end of the
+//! parenthesis.
 
 use std::collections::BTreeSet;
 
 use super::token::{Tok, Token};
 use crate::alphabet::ParameterKind;
 
-/// Meaning of the content after a parenthesis in a header.
+/// Meaning of the content that follows a parenthesis in a header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Begins<'s> {
-    /// The parentheses contain parameters.
+    /// The parenthesis contains parameters.
     Parameters,
-    /// The parentheses do not contain parameters.
+    /// The parenthesis does not contain parameters.
     Others,
-    /// The content may be, as in `(v: spead)`, a parameter of an unknown type or, if a plan is called `spead`, a use of
-    /// that plan with a label.
+    /// The content can be a parameter with an unknown type, as in `(v: spead)`; or, if a plan is called `spead`, a use
+    /// of that plan with a label.
     Either(&'s str),
 }
 
-/// Sets the kinds of the parentheses in the headers of plans; brackets must be balanced.
+/// Sets the kinds of the parentheses in the headers of all plans. The brackets must be balanced.
 pub(super) fn mark(tokens: &mut [Token<'_>]) {
     let mut plans = None;
     for brace in 0..tokens.len() {
@@ -28,24 +29,24 @@ pub(super) fn mark(tokens: &mut [Token<'_>]) {
     }
 }
 
-/// Sets the kind of the parenthesis at `at`, and of the next parenthesis if the first contains parameters; `plans`
-/// caches the names of the file's plans.
+/// Sets the kind of the parenthesis at `at`; if this parenthesis contains parameters, also sets the kind of the next
+/// one. `plans` caches the names of the file's plans.
 fn mark_header<'s>(tokens: &mut [Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s str>>) {
     for (at, kind) in groups(tokens, at, plans).into_iter().flatten() {
         set(tokens, at, kind);
     }
 }
 
-/// Returns the index of the last token of a plan's header, whose opening brace is at `brace`; `None` for the brace of a
-/// loop, or for a plan without a name.
+/// Returns the index of the last token in the header of the plan whose opening brace is at `brace`; `None` for the
+/// brace of a loop, or for a plan without a name.
 pub(super) fn end<'s>(tokens: &[Token<'s>], brace: usize, plans: &mut Option<BTreeSet<&'s str>>) -> Option<usize> {
     let name = name_of(tokens, brace)?;
     let mut groups = groups(tokens, name + 1, plans).into_iter().flatten().filter(|(_, kind)| *kind != Tok::LParen);
     Some(groups.next_back().map_or(name, |(at, _)| end_of_group(tokens, at)))
 }
 
-/// Returns the index of the name of the plan whose opening brace is at `brace`. The name is the next token, or in the
-/// plan of a group the token after the robots. Returns `None` for the brace of a loop, and for a plan without a name.
+/// Returns the index of the name of the plan whose opening brace is at `brace`. The name is the next token; in the plan
+/// of a group, it is the token after the robots. Returns `None` for the brace of a loop, and for a plan without a name.
 fn name_of(tokens: &[Token<'_>], brace: usize) -> Option<usize> {
     let mut name = brace + 1;
     if is(tokens, name, Tok::Group) {
@@ -54,7 +55,8 @@ fn name_of(tokens: &[Token<'_>], brace: usize) -> Option<usize> {
     (is_name(tokens, name) && !is_loop(tokens, brace)).then_some(name)
 }
 
-/// Returns the parentheses that follow a plan's name at `at`, at most two, each with its kind of token.
+/// Returns the parentheses, at most two, that follow a plan's name at `at`. Each is returned with the kind of its
+/// token.
 fn groups<'s>(tokens: &[Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s str>>) -> [Option<(usize, Tok<'s>)>; 2] {
     if !is_parenthesis(tokens, at) {
         return [None; 2];
@@ -86,8 +88,8 @@ pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
     named.collect()
 }
 
-/// Determines if parameters begin after a parenthesis: a name and a colon, and then a type or a name that must be a
-/// type. A string whose first element has a label begins in the same way.
+/// Determines whether parameters begin after a parenthesis. Parameters begin with a name, a colon, and a type or a name
+/// that must be a type. A string whose first element has a label begins in the same way.
 pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
     match (behind.next(), behind.next()) {
         (Some(Tok::Name(_)), Some(Tok::Colon)) => {}
@@ -122,8 +124,8 @@ fn is_type(name: &str) -> bool {
     name == "bits" || ParameterKind::NAMES.contains(&name)
 }
 
-/// Returns `true` if a group contains a token that cannot be in a condition, at any depth: an element, a colon, or a
-/// comma that is not between arguments. `behind` contains the tokens after the group's opening parenthesis.
+/// Returns `true` if a group contains, at any depth, a token that cannot be part of a condition: an element, a colon,
+/// or a comma that is not between arguments. `behind` contains the tokens after the group's opening parenthesis.
 pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
     let mut depth = 1_usize;
     // Depth of the outermost parenthesis that contains arguments, and `true` if arguments may begin with the next
@@ -156,7 +158,7 @@ pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
     false
 }
 
-/// Returns `true` if the brace belongs to an `ExecPlan`, in which the first name is not the name of a plan.
+/// Returns `true` if the brace belongs to an `ExecPlan`. The first name in such a brace is not the name of a plan.
 fn is_loop(tokens: &[Token<'_>], brace: usize) -> bool {
     let before = |back: usize| brace.checked_sub(back).and_then(|at| tokens.get(at)).map(|token| token.kind);
     match (before(2), before(1)) {

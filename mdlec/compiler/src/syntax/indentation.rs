@@ -1,4 +1,4 @@
-//! Determines the ends of braces that are never closed, from the indentation of lines.
+//! Uses the indentation of lines to determine the ends of braces that are never closed.
 
 use std::collections::BTreeMap;
 
@@ -8,9 +8,9 @@ use super::token::{Tok, Token};
 /// The braces that end before a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum BraceEnd {
-    /// All open braces: another plan begins at this indentation.
+    /// All open braces end, because another plan begins at this indentation.
     OfPlan,
-    /// The brace that opens at the token with this index, and the brackets inside it.
+    /// The brace that opens at the token with this index ends, and so do all brackets inside it.
     OfBrace(usize),
 }
 
@@ -19,12 +19,12 @@ struct OpenBrace {
     brace: usize,
     /// Indentation of the brace's line, in characters.
     indentation: usize,
-    /// `true` if a line inside the brace is indented deeper.
+    /// `true` if a line inside the brace is indented more than the brace's line.
     is_deeper: bool,
 }
 
-/// Returns the tokens before which a brace must be closed. Such a token begins a line that is not indented deeper than
-/// the line of the brace, although a line between the two lines is.
+/// Returns the tokens before which a brace must be closed. Such a token begins a line that is not indented more than
+/// the line of the brace, although a line between these two lines is.
 pub(super) fn ends(source: FileText<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, BraceEnd> {
     let mut ends = BTreeMap::new();
     let mut open: Vec<OpenBrace> = Vec::new();
@@ -55,7 +55,7 @@ pub(super) fn ends(source: FileText<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize
     ends
 }
 
-/// Returns the number of characters before a place in its line, if all of them are spaces or tabs.
+/// Returns the number of characters that precede a place in its line; `None` unless all of them are spaces or tabs.
 fn indentation_of(source: FileText<'_>, start: usize) -> Option<usize> {
     let before = source.text.get(..start)?;
     let line = before.rsplit('\n').next().unwrap_or(before);

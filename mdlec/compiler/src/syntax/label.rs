@@ -1,11 +1,12 @@
-//! Reads labels of plans, such as `Γ_from^to` (docs/src/reference/language.md, 2): determines their length in the text,
-//! and their words without typesetting.
+//! Parses labels of plans, such as `Γ_from^to` (docs/src/reference/language.md, 2). Determines their length in the
+//! text, and their words without typesetting.
 
 use std::borrow::Cow;
 
 use logos::{Lexer, Logos};
 
-/// A part of a label. The lexer of plans does not have these parts, because they would make it several times as large.
+/// A part of a label. These parts are not in the lexer of plans, because they would make that lexer several times as
+/// large.
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum LabelPart {
     #[regex(r"[\p{L}\p{M}\p{Nd}_]+")]
@@ -31,8 +32,8 @@ pub(super) fn label_length(text: &str) -> Option<usize> {
     Some(behind.and_then(name_length).map_or(to, |name| to + 1 + name))
 }
 
-/// Returns the length in bytes of the name at the start of `text`: a word, or words in braces, which may be the braces
-/// of `\text`.
+/// Returns the length, in bytes, of the name at the start of `text`. A name is a word, or words in braces, which may be
+/// the braces of `\text`.
 fn name_length(text: &str) -> Option<usize> {
     let mut parts = LabelPart::lexer(text);
     match parts.next()?.ok()? {

@@ -1,5 +1,5 @@
-//! Splits text into tokens (docs/src/reference/language.md, 2). Spaces, comments and typesetting are left out. Each
-//! parenthesis records if it touches a name.
+//! Splits text into tokens (docs/src/reference/language.md, 2). Spaces, comments and typesetting are omitted. For each
+//! parenthesis, records whether it touches a name.
 
 use logos::{Lexer, Logos};
 
@@ -13,11 +13,11 @@ use crate::diagnostic::Diagnostic;
 /// Output of the lexer.
 #[derive(Debug, Default)]
 pub(super) struct Lexed<'s> {
-    /// Tokens in their order.
+    /// Tokens in the order of the text.
     pub(super) tokens: Vec<Token<'s>>,
     /// Doc comments, each with the number of tokens before it.
     pub(super) docs: Vec<(usize, &'s str)>,
-    /// Lexical errors in their order, each with the number of tokens before it.
+    /// Lexical errors in the order of the text, each with the number of tokens before it.
     pub(super) errors: Vec<(usize, Diagnostic)>,
 }
 
@@ -52,7 +52,8 @@ pub(super) fn lex(source: FileText<'_>) -> Lexed<'_> {
     reader.lexed
 }
 
-/// Returns the label that begins with the token `kind`, and consumes its rest; returns the token if no label begins.
+/// Returns the label that begins with the token `kind`, after consuming the rest of the label. If no label begins
+/// there, returns the token.
 fn labelled<'s>(kind: Tok<'s>, lexer: &mut Lexer<'s, Tok<'s>>) -> Tok<'s> {
     let begins = matches!(kind, Tok::Name(name) if name.starts_with("Γ_") || name.starts_with("Gamma_"))
         || (kind == Tok::Command && lexer.slice() == r"\Gamma");
@@ -70,21 +71,21 @@ struct Reader<'s> {
     text_ends: usize,
     /// End of the last token, including the typesetting that touches it.
     touches: usize,
-    /// Place of the unexpected characters just read, which have not been reported yet.
+    /// Place of unexpected characters that have just been read and have not been reported yet.
     run: Option<TextRange>,
-    /// End of a file name that was read although it is not in double quotes.
+    /// End of a file name that was read as a string although it is not in double quotes.
     skipped: usize,
-    /// State of the dots in signals; `None` before the head of a group has been read.
+    /// State for processing dots in signals; `None` before the head of a group has been read.
     dots: Option<Dots>,
 }
 
-/// State of the dots in `robot1.x`.
+/// State for processing the dots in `robot1.x`.
 #[derive(Default)]
 struct Dots {
-    /// Number of open parentheses. Outside of parentheses a dot cannot belong to a signal, because signals are in
-    /// conditions.
+    /// Number of open parentheses. Outside of parentheses, a dot cannot belong to a signal, because signals occur only
+    /// in conditions.
     depth: usize,
-    /// The dot after the last token, if a word touches both sides of it.
+    /// The dot after the last token, if words touch both sides of the dot.
     last: Option<TextRange>,
 }
 
@@ -147,7 +148,7 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Counts the open parentheses in the plans after the head of a group.
+    /// Counts the open parentheses in plans that follow the head of a group.
     fn count(&mut self, kind: Tok<'s>) {
         let Some(dots) = &mut self.dots else { return };
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no parentheses")]
@@ -159,7 +160,7 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Processes a dot: in a file with a group it may be between a robot and its signal.
+    /// Processes a dot. In a file with a group, it may be between a robot and its signal.
     fn dot(&mut self, place: TextRange) {
         let is_name = self.touches == place.start && self.after_name();
         let rest = self.source.text.get(place.end..).unwrap_or("");
@@ -171,7 +172,7 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Joins the name that ends at `end` to the name before the dot.
+    /// Joins the name that ends at `end` and the name before the dot.
     fn join(&mut self, end: usize) {
         let Some(token) = self.lexed.tokens.last_mut() else { return };
         token.place.end = end;
@@ -179,7 +180,7 @@ impl<'s> Reader<'s> {
         self.touches = end;
     }
 
-    /// Returns `true` if the last tokens are `{ Group`, and then marks `Group` as a keyword.
+    /// Returns `true`, and marks `Group` as a keyword, if the last tokens are `{ Group`.
     fn begins_group(&mut self) -> bool {
         let [.., Token { kind: Tok::LBrace, .. }, word @ Token { kind: Tok::Name("Group"), .. }] =
             self.lexed.tokens.as_mut_slice()
@@ -203,8 +204,8 @@ impl<'s> Reader<'s> {
         matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Name(_), .. }))
     }
 
-    /// Returns `true` if the last token is the law of a formation, as in `formation line 1m goAvoid`; the law and its
-    /// arguments are arguments of the formation.
+    /// Returns `true` if the last token is the law of a formation, as in `formation line 1m goAvoid`. The law and its
+    /// arguments are then arguments of the formation.
     fn after_law_of_formation(&self) -> bool {
         let is_word = |token: &&Token<'_>| !matches!(token.kind, Tok::LParen | Tok::TouchParen | Tok::Comma);
         let mut words = self.lexed.tokens.iter().rev().filter(is_word).map(|token| token.kind);
@@ -218,8 +219,7 @@ impl<'s> Reader<'s> {
         matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Frame, .. }))
     }
 
-    /// Reports and drops a text that touches a number and is not a unit. A text that does not touch the number is a
-    /// name.
+    /// Reports and removes text that touches a number and is not a unit. Text that does not touch the number is a name.
     fn number(&mut self, number: &'s str, tail: &'s str, place: TextRange) {
         self.end_run();
         let unit = tail.trim_start();
@@ -235,7 +235,7 @@ impl<'s> Reader<'s> {
         self.push(Tok::Number(number), place);
     }
 
-    /// Drops the braces of `\text{…}`, which do not separate a name from its parenthesis.
+    /// Removes the braces of `\text{…}`, which do not separate a name from its parenthesis.
     fn text(&mut self, place: TextRange) {
         match text_end(self.source.text, place.end) {
             Some(end) => self.text_ends = end,
@@ -250,7 +250,7 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Extends the run of neighbouring unexpected characters, which are reported together.
+    /// Extends a series of neighbouring unexpected characters, which are reported together.
     fn character(&mut self, place: TextRange) {
         match &mut self.run {
             Some(run) if run.end == place.start => run.end = place.end,
@@ -268,7 +268,7 @@ impl<'s> Reader<'s> {
     }
 }
 
-/// Returns the text in quotes that are not double quotes, with the offset of its end.
+/// Returns the text in quotes other than double quotes, and the offset of its end.
 fn quoted(text: &str, opener: TextRange) -> Option<(&str, usize)> {
     let closers: &[char] = match text.get(opener.start..opener.end)? {
         "'" | "‘" | "`" => &['\'', '’', '`', '‘'],
@@ -282,7 +282,7 @@ fn quoted(text: &str, opener: TextRange) -> Option<(&str, usize)> {
     is_name.then_some((name, opener.end + length + closer.len_utf8()))
 }
 
-/// Returns the start and the text of a Windows path whose first backslash is at `backslash`.
+/// Returns the start and the text of the Windows path whose first backslash is at `backslash`.
 fn drive(text: &str, backslash: TextRange) -> Option<(usize, &str)> {
     let start = backslash.start.checked_sub(2)?;
     let is_drive = text.get(start..backslash.start)?.starts_with(|c: char| c.is_ascii_alphabetic());
@@ -292,8 +292,8 @@ fn drive(text: &str, backslash: TextRange) -> Option<(usize, &str)> {
     (is_drive && is_word && path.get(1..2) == Some(":")).then_some((start, path))
 }
 
-/// Returns the byte offset of the brace that closes the `\text{` ending at `from`; `None` if there is no such brace, or
-/// if another brace opens before it.
+/// Returns the byte offset of the brace that closes the `\text{` that ends at `from`; `None` if there is no such brace,
+/// or if another brace opens before it.
 fn text_end(text: &str, from: usize) -> Option<usize> {
     let mut bytes = text.bytes().enumerate().skip(from);
     while let Some((at, byte)) = bytes.next() {

@@ -7,7 +7,7 @@ use super::source::{FileText, TextRange};
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// Reports a run of characters with which no token begins.
+/// Reports a series of characters with which no token begins.
 pub(super) fn characters(source: FileText<'_>, place: TextRange) -> Diagnostic {
     let found = source.slice(place);
     if let Some(diagnostic) = arithmetic(source, found, place) {
@@ -23,7 +23,7 @@ pub(super) fn characters(source: FileText<'_>, place: TextRange) -> Diagnostic {
     characters_help(diagnostic, source, found, place)
 }
 
-/// Returns `diagnostic` with help about the usual meaning of the characters `found`.
+/// Returns `diagnostic` with help about the meaning that the characters `found` usually have.
 fn characters_help(diagnostic: Diagnostic, source: FileText<'_>, found: &str, place: TextRange) -> Diagnostic {
     let after = source.text.get(place.end..).unwrap_or("");
     let next = after.chars().next();
@@ -75,7 +75,7 @@ fn characters_help(diagnostic: Diagnostic, source: FileText<'_>, found: &str, pl
     }
 }
 
-/// Returns the message with help about a text that contains the characters, such as `T#5s`, `bend.csv` or `r0 != 50cm`.
+/// Returns the message with help about the surrounding text, such as `T#5s`, `bend.csv` or `r0 != 50cm`.
 fn words_around(diagnostic: &Diagnostic, source: FileText<'_>, found: &str, place: TextRange) -> Option<Diagnostic> {
     let (before, after) = (source.text.get(..place.start)?, source.text.get(place.end..)?);
     let left = word(before);
@@ -120,11 +120,11 @@ fn begins_line(source: FileText<'_>, at: usize) -> bool {
     before.rsplit('\n').next().unwrap_or(before).trim().is_empty()
 }
 
-/// Help that lists the typesetting commands that the lexer accepts.
+/// Help text that lists the typesetting commands that the lexer accepts.
 const TYPESETTING: &str = "of typesetting only `\\\\`, `\\{`, `\\}`, `\\text{…}`, `\\infty`, `\\leq`, `\\geq`, `\\Gamma_{…}` and `\\sigma_{null}` are read";
 
-/// Returns `true` if an operand can begin at this offset: after a space, an opening bracket, or a sign between
-/// operands.
+/// Returns `true` if an operand can begin at this offset, because a space, an opening bracket, or a sign between
+/// operands precedes it.
 fn begins_operand(source: FileText<'_>, at: usize) -> bool {
     let before = source.text.get(..at).unwrap_or("");
     before.is_empty() || before.ends_with(|c: char| c.is_whitespace() || "(,<>=".contains(c))
@@ -156,7 +156,7 @@ fn sign(diagnostic: Diagnostic, source: FileText<'_>, found: &str, place: TextRa
     diagnostic.fix(words, span, format!("{found}{number}"))
 }
 
-/// Returns a word that replaces characters, with spaces where the characters touch other text.
+/// Returns the word `word`, which replaces characters, with spaces where the characters touch other text.
 fn apart(source: FileText<'_>, place: TextRange, word: &str) -> String {
     let is_blank = |c: Option<char>| c.is_none_or(char::is_whitespace);
     let before = source.text.get(..place.start).and_then(|before| before.chars().next_back());
@@ -282,7 +282,7 @@ fn dot(number: &str, tail: &str, span: Span, whole: Span) -> Diagnostic {
     diagnostic.help("a number has one dot at most, with digits on both sides: `0.36`")
 }
 
-/// Returns the unit that `written` probably means.
+/// Returns the unit that the user probably meant by `written`.
 pub(crate) fn nearest_unit(written: &str) -> Option<&'static str> {
     let spelled = match written.to_lowercase().as_str() {
         "°" | "degree" | "degrees" => Some("deg"),
@@ -313,13 +313,13 @@ pub(crate) fn nearest_unit(written: &str) -> Option<&'static str> {
     })
 }
 
-/// Returns the list of all units for a sentence.
+/// Returns a list of all units for use in a sentence.
 fn units() -> String {
     let names: Vec<String> = Unit::ALL.iter().map(|unit| format!("`{}`", unit.name)).collect();
     names.join(" ")
 }
 
-/// Returns characters in quotes; invisible characters are shown by their number.
+/// Returns characters in quotes; invisible characters are replaced by their numbers.
 fn shown(text: &str) -> String {
     let shown: String = text
         .chars()
@@ -328,7 +328,7 @@ fn shown(text: &str) -> String {
     format!("`{shown}`")
 }
 
-/// Returns `diagnostic` with help about a comment in `(*` and `*)`; the characters at both ends have the same help.
+/// Returns `diagnostic` with help about a comment between `(*` and `*)`. The characters at both ends get the same help.
 fn pascal_comment(diagnostic: Diagnostic, source: FileText<'_>, place: TextRange) -> Diagnostic {
     let text = source.text;
     let begins = |at: usize| text.get(..at).filter(|before| before.ends_with('(')).map(|before| before.len() - 1);

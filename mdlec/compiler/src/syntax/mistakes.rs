@@ -1,4 +1,4 @@
-//! Writes messages about common mistakes, each with a text to type instead.
+//! Writes messages about common mistakes. Each message proposes a text to type instead.
 
 mod atoms;
 mod calls;
@@ -21,7 +21,7 @@ use groups::head_of_group;
 use labels::{label_and_equals, label_behind, label_in_quotes, label_of_after};
 use parameters::parameters;
 
-/// Returns the message about the first known mistake that the site contains.
+/// Returns the message about the first common mistake that is found at the site.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 21] = [
         head_of_group,
@@ -53,7 +53,7 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports a plan without a name, or with a text that cannot be a name.
+/// Reports a plan that has no name, or has a text in place of its name that cannot be a name.
 fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let is_single = site.kind(site.at + 1) != Some(Tok::Colon);
     if site.found() == Some(Tok::Colon) && is_single && site.before(2) == Some(Tok::LBrace) && site.expects_element() {
@@ -253,7 +253,7 @@ fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// Returns the index of a name that equals a keyword except for upper and lower case, with that keyword.
+/// Returns the index of a name that equals a keyword except for upper and lower case, and the keyword.
 fn spelling(site: &Site<'_, '_>) -> Option<(usize, &'static str)> {
     let places = [Some(site.at), site.at.checked_sub(1)].into_iter().flatten();
     let names = places.filter_map(|at| Some((at, site.name_at(at)?)));

@@ -1,5 +1,5 @@
-//! Parses text to a tree: tokens, brackets, grammar (docs/src/reference/language.md, 2 and 3). Parsing never fails: it
-//! returns a tree and a list of diagnostics.
+//! Parses text to a tree, in three steps: tokens, brackets, and grammar (docs/src/reference/language.md, 2 and 3).
+//! Parsing never fails: it returns a tree and a list of diagnostics.
 
 mod arithmetic;
 mod brackets;
@@ -57,10 +57,10 @@ pub(crate) use lexical::nearest_unit;
 pub use one_line::one_line;
 pub use single::{is_law, operands};
 
-/// Arena that holds the nodes of a tree.
+/// Arena that contains the nodes of a tree.
 pub type Arena = bumpalo::Bump;
 
-/// Returns an arena with room for the tree of `text`: most trees fit, and are allocated at once.
+/// Returns an arena with room for the tree of `text`. Most trees fit, so one allocation is enough.
 #[must_use]
 pub fn arena_for(text: &str) -> Arena {
     Arena::with_capacity(6 * text.len())

@@ -1,7 +1,7 @@
 //! Constructors of the tree's nodes, one for each action of the grammar.
 //!
-//! The parser's stack holds small values that need no dropping, because the parser moves them with every token: large
-//! nodes are already in the arena, and members of a list wait in separate stacks until the list is complete.
+//! The parser moves the values on its stack with every token, so they are small and need no destructor. Large nodes are
+//! therefore already in the arena, and the members of a list wait in separate stacks until the list is complete.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -31,12 +31,12 @@ pub(super) struct Head<'s> {
     pub(super) condition: Option<Condition<'s>>,
 }
 
-/// State of the constructors: the input, and the nodes and errors so far.
+/// State of the constructors: the input, and the nodes and errors that have been created so far.
 pub(super) struct Nodes<'t, 's> {
     pub(super) source: FileText<'s>,
     /// Arena of the tree.
     arena: &'s Bump,
-    /// Tokens of the text, from which the nodes of broken elements are made.
+    /// Tokens of the text. Nodes of broken elements are made from them.
     pub(super) tokens: &'t [Token<'s>],
     /// Doc comments, each with the index of the token that follows it.
     docs: &'t [(usize, &'s str)],
@@ -46,12 +46,12 @@ pub(super) struct Nodes<'t, 's> {
     pub(super) file: File<'s>,
     /// Errors from which the parser has recovered, in the order of the text.
     pub(super) errors: Vec<Recovery<'s>>,
-    /// Messages about empty bodies, each with the tokens of the body.
+    /// Messages about empty bodies, each with the range of the body's tokens.
     pub(super) empty: Vec<(Range<usize>, Diagnostic)>,
 }
 
 impl<'t, 's> Nodes<'t, 's> {
-    /// Returns constructors for the tokens of a text.
+    /// Creates constructors for the tokens of a text.
     pub(super) fn new(
         source: FileText<'s>,
         arena: &'s Bump,
@@ -111,7 +111,7 @@ impl<'t, 's> Nodes<'t, 's> {
         self.put(Head { name: Some(name), group: None, params, condition })
     }
 
-    /// Returns the head of a group's plan; the group's robots are the waiting arguments from `first` on.
+    /// Returns the head of a group's plan. The robots of the group are the waiting arguments from index `first` on.
     pub(super) fn group_head(
         &mut self,
         first: Option<First>,
@@ -127,15 +127,15 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.params.push(Param { name, type_name });
     }
 
-    /// Returns the name before a brace, as in `A { … }`. The name has been reported as misplaced, but other plans may
-    /// refer to it.
+    /// Returns the name before a brace, as in `A { … }`. The name has already been reported as misplaced, but other
+    /// plans may refer to it.
     fn name_before(&self, brace: Location) -> Option<Name<'s>> {
         let before = self.tokens.get((brace.token as usize).checked_sub(1)?)?;
         let Tok::Name(name) = before.kind else { return None };
         Some(Spanned { node: name, span: self.source.span(before.place) })
     }
 
-    /// Returns the lines of the doc comment directly before a plan.
+    /// Returns the lines of the doc comment that directly precedes a plan.
     fn docs_of(&self, start: Location) -> &'s [&'s str] {
         let start = start.token as usize;
         let first = self.docs.partition_point(|(token, _)| *token < start);
@@ -175,12 +175,12 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.element(Element { primary, marks, span })
     }
 
-    /// Completes the list of elements that begins at `first`.
+    /// Completes the list of elements that begins at the index `first`.
     fn elements(&mut self, first: Option<First>) -> &'s [Element<'s>] {
         first.map_or(&[][..], |first| complete(&mut self.waiting.elements, first, self.arena))
     }
 
-    /// Returns a list whose only element is the law of an atom in formal notation.
+    /// Returns a list with a single element: the law of an atom in formal notation.
     pub(super) fn law(&mut self, start: Location, name: Name<'s>, first: First, end: Location) -> Option<First> {
         let call = self.call(start, name, Some(first), end);
         Some(self.waiting.element(single(call)))
@@ -264,7 +264,7 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.condition(operand)
     }
 
-    /// Joins operands by an operator; `rest` is the index of the second operand.
+    /// Joins operands with an operator; `rest` is the index of the second operand.
     pub(super) fn joined(
         &mut self,
         first: Condition<'s>,
@@ -279,7 +279,7 @@ impl<'t, 's> Nodes<'t, 's> {
 
     // ---- Calls ----
 
-    /// Returns a call with the waiting arguments from `first` on.
+    /// Returns a call whose arguments are the waiting arguments from index `first` on.
     pub(super) fn call(
         &mut self,
         start: Location,

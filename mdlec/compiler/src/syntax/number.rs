@@ -1,6 +1,6 @@
-//! Splits the number at the beginning of a text from the rest.
+//! Splits a text into the number at its beginning and the rest.
 
-/// Returns the number at the beginning of a text, which may be empty, and the text that touches the number.
+/// Returns the number at the beginning of a text, which may be empty, and the rest that directly follows it.
 pub(super) fn split(text: &str) -> (&str, &str) {
     let digits = |from: usize| text.bytes().skip(from).take_while(u8::is_ascii_digit).count();
     let is = |at: usize, any: &[u8]| text.as_bytes().get(at).is_some_and(|byte| any.contains(byte));

@@ -4,9 +4,9 @@ use super::lexer::lex;
 use super::source::FileText;
 use crate::diagnostic::SourceId;
 
-/// Returns the tokens of `text` on one line, without comments, typesetting and enclosing parentheses; one space
-/// separates tokens that are separated in `text`. `ends` contains offsets in `text` at which tokens end; also returns
-/// the corresponding offsets in the line.
+/// Returns the tokens of `text` on one line, without comments, typesetting and enclosing parentheses. A single space
+/// separates tokens that are separated in `text`. `ends` contains offsets in `text` at which tokens end; the function
+/// also returns the corresponding offsets in the line.
 #[must_use]
 pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String, [Option<usize>; N]) {
     let tokens = lex(FileText { id: SourceId(0), text }).tokens;
@@ -36,7 +36,7 @@ pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String
     (line, places)
 }
 
-/// Returns `true` if the last token of `range` closes the parenthesis that the first token opens.
+/// Returns `true` if the last token of `range` closes the parenthesis that its first token opens.
 fn closes(range: &std::ops::Range<usize>, is: &impl Fn(usize, &str) -> bool) -> bool {
     let mut depth = 0_usize;
     for index in range.clone() {

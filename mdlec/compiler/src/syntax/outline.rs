@@ -1,4 +1,4 @@
-//! Prints the tree of a file as an outline, with one line for each node as written; names are not resolved.
+//! Prints the tree of a file as an outline, with one line for each node; names are not resolved.
 
 use super::tree::{
     Arg, Call, Condition, ConditionNode, Count, Element, File, Frame, Number, Operand, Param, Plan, Primary,

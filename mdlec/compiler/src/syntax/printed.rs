@@ -1,5 +1,5 @@
-//! Reads strings as printed in the paper (docs/src/reference/language.md, 3.2), with commas between elements, and with
-//! plans without braces before `σ_null`.
+//! Parses strings as printed in the paper (docs/src/reference/language.md, 3.2). There, commas separate elements, and
+//! plans before `σ_null` have no braces.
 
 use std::borrow::Cow;
 
@@ -8,10 +8,10 @@ use super::lexer::{Lexed, lex};
 use super::source::{FileText, TextRange};
 use super::token::{Tok, Token};
 
-/// Name of a plan that is printed without a name.
+/// Name that is given to a plan that is printed without a name.
 const NAME: &str = "Plan";
 
-/// Removes the commas between elements, and inserts the braces of a plan around a string before `σ_null`.
+/// Removes commas between elements, and inserts the braces of a plan around a string that precedes `σ_null`.
 pub(super) fn read(lexed: &mut Lexed<'_>) {
     let is_printed = |token: &Token<'_>| matches!(token.kind, Tok::Comma | Tok::SigmaNull);
     if !lexed.tokens.iter().any(is_printed) {
@@ -66,8 +66,8 @@ pub(super) fn with_braces(source: FileText<'_>) -> Cow<'_, str> {
     Cow::Owned(text)
 }
 
-/// Appends the brace and the name of a plan without braces, and the null interrupt if the next group looks like a
-/// condition.
+/// Appends the brace and the name that a plan without braces lacks. If the next group looks like a condition, also
+/// appends the null interrupt.
 fn head<'s>(tokens: &[Token<'s>], at: usize, new: &mut Vec<Token<'s>>) {
     let start = tokens.get(at).map_or(0, |token| token.place.start);
     let mut push = |kind| new.push(Token { kind, place: TextRange::new(start, start) });
@@ -77,18 +77,19 @@ fn head<'s>(tokens: &[Token<'s>], at: usize, new: &mut Vec<Token<'s>>) {
     }
 }
 
-/// Kind of content of an open bracket.
+/// Content of an open bracket.
 #[derive(Clone, Copy, PartialEq)]
 enum Inside {
-    /// The braces of a plan or a loop, with elements.
+    /// The braces of a plan or a loop; they contain elements.
     Braces,
-    /// Parentheses with elements or with formal notation.
+    /// Parentheses that contain elements or formal notation.
     Parentheses,
-    /// Parentheses with arguments or parameters.
+    /// Parentheses that contain arguments or parameters.
     Others,
 }
 
-/// Returns the commas between elements, and the plans without braces, each as its first token and its `σ_null`.
+/// Returns the commas between elements, and the plans without braces, each given by the indices of its first token and
+/// its `σ_null`.
 fn found(tokens: &[Token<'_>]) -> (Vec<usize>, Vec<(usize, usize)>) {
     let (mut commas, mut plans, mut open) = (Vec::new(), Vec::new(), Vec::new());
     // Index at which the text outside of all plans begins.
@@ -136,7 +137,7 @@ fn found(tokens: &[Token<'_>]) -> (Vec<usize>, Vec<(usize, usize)>) {
     (commas, plans)
 }
 
-/// Returns `true` if only groups in parentheses, and their powers, are between two tokens.
+/// Returns `true` if there are only groups in parentheses, with or without powers, between two tokens.
 fn is_string(tokens: &[Token<'_>], first: usize, end: usize) -> bool {
     let mut depth = 0_usize;
     tokens.get(first..end).unwrap_or(&[]).iter().all(|token| {
@@ -151,7 +152,7 @@ fn is_string(tokens: &[Token<'_>], first: usize, end: usize) -> bool {
     })
 }
 
-/// Returns `true` if an element ends with the last of two tokens. The angle of `FRAME`, the count of `ExecPlan` and the
+/// Returns `true` if the second of two tokens ends an element. The angle of `FRAME`, the count of `ExecPlan`, and the
 /// brace of a plan outside all plans do not end an element.
 fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool {
     let is_word = matches!(before, Some(Tok::Frame | Tok::ExecPlan));
@@ -163,8 +164,8 @@ fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool 
     }
 }
 
-/// Returns `true` if an element follows a comma. In parentheses, a condition may follow the comma, so a name or a group
-/// that may be a condition does not count as an element.
+/// Returns `true` if an element follows a comma. In parentheses, a condition may follow the comma. Therefore, a name or
+/// a group that may be a condition is not treated as an element.
 fn begins_element(tokens: &[Token<'_>], comma: usize, inside: Option<Inside>) -> bool {
     let kind = |ahead: usize| tokens.get(comma + ahead).map(|token| token.kind);
     let Some(next) = kind(1).filter(|_| inside != Some(Inside::Others)) else { return false };

@@ -1,5 +1,5 @@
-//! Constructors for the alternatives of the grammar that recover from errors: they make nodes in place of dropped
-//! tokens.
+//! Constructors for the alternatives of the grammar that recover from errors. They create nodes in place of tokens that
+//! were dropped.
 
 use super::nodes::{Head, Nodes, Recovery};
 use super::source::{Location, TextRange};
@@ -19,7 +19,7 @@ impl<'s> Nodes<'_, 's> {
         self.put(Head::default())
     }
 
-    /// Keeps the robots of a group that were read.
+    /// Keeps the robots of a group that were read before the error.
     pub(super) fn broken_robots(
         &mut self,
         first: Option<First>,
@@ -31,7 +31,7 @@ impl<'s> Nodes<'_, 's> {
         self.group_head(first, name, condition)
     }
 
-    /// Keeps the parameters that were read.
+    /// Keeps the parameters that were read before the error.
     pub(super) fn broken_params(&mut self, error: Recovery<'s>) {
         self.errors.push(error);
     }
@@ -42,7 +42,7 @@ impl<'s> Nodes<'_, 's> {
         self.waiting.args.len()
     }
 
-    /// Records an error in the arguments of a call, and keeps the arguments that were read.
+    /// Records an error in the arguments of a call, and keeps the arguments that were read before the error.
     pub(super) fn broken_args(
         &mut self,
         start: Location,
@@ -76,7 +76,7 @@ impl<'s> Nodes<'_, 's> {
         None
     }
 
-    /// Returns the span between two locations, even if dropped text begins or ends there.
+    /// Returns the span between two locations, even if dropped text begins or ends at them.
     fn around(&self, start: Location, end: Location) -> Span {
         let first = self.tokens.get(start.token as usize).map_or(self.source.text.len(), |token| token.place.start);
         let last = (end.token as usize).checked_sub(1).and_then(|last| self.tokens.get(last));

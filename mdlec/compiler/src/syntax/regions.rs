@@ -1,7 +1,7 @@
-//! Regions of tokens that a single error may affect. A region is an outermost parenthesis inside its innermost brace,
-//! or the tokens between two such parentheses on one line. Only the first error in a region is reported.
+//! Regions of tokens that a single error may affect. A region is an outermost parenthesis within its innermost brace,
+//! or the tokens on one line between two such parentheses. Only the first error in a region is reported.
 
-/// Regions of a text, which are built together with its tokens.
+/// Regions of a text. They are determined while the tokens are being read.
 #[derive(Debug)]
 pub(super) struct Regions {
     /// Region of each token.
@@ -10,7 +10,7 @@ pub(super) struct Regions {
     spoiled: Vec<bool>,
     /// Region of the next token.
     current: usize,
-    /// Number of open parentheses around the next token, inside its innermost brace.
+    /// Number of open parentheses around the next token, counted within its innermost brace.
     depth: usize,
     /// Region and depth at each open brace.
     around: Vec<(usize, usize)>,
@@ -35,7 +35,8 @@ impl Regions {
         }
     }
 
-    /// Records an error in the region of this token; returns `true` if an error there had been reported before.
+    /// Records an error in the region of this token. Returns `true` if an error in this region had already been
+    /// reported.
     pub(super) fn is_spoiled_once(&mut self, token: usize) -> bool {
         let region = self.of_token.get(token).or(self.of_token.last()).copied().unwrap_or(0);
         self.spoiled.get_mut(region).is_some_and(|spoiled| std::mem::replace(spoiled, true))

@@ -4,7 +4,7 @@ use logos::{FilterResult, Lexer, Logos};
 
 use crate::alphabet::Unit;
 
-/// Reads a number with the text that touches it, and fails if that text is not a unit.
+/// Reads a number and the text that touches it. Fails if this text is not a unit.
 pub(super) fn number<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> Result<&'s str, ()> {
     let rest = lexer.remainder();
     let tail = match rest.as_bytes() {
@@ -35,8 +35,8 @@ fn touching(rest: &str) -> usize {
     rest.len()
 }
 
-/// Returns the length in bytes of the spaces and the unit after a number, if the unit contains `/`. Only units contain
-/// `/`, so spaces may precede such a unit.
+/// Returns the length in bytes of the spaces and the unit after a number, if the unit contains `/`. Such a unit may
+/// follow after spaces, because only units contain `/`.
 fn unit_apart(rest: &str) -> usize {
     let blanks = rest.bytes().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
     let behind = rest.get(blanks..).unwrap_or("");
@@ -51,7 +51,7 @@ fn unit_apart(rest: &str) -> usize {
     Unit::ALL.iter().find(|unit| follows(unit)).map_or(0, |unit| blanks + unit.name.len())
 }
 
-/// Returns the text in the quotes; a string that does not end on its line ends where a file name could end.
+/// Returns the text in the quotes; if the string does not end on its line, it ends where a file name could end.
 pub(super) fn string<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> &'s str {
     let rest = lexer.remainder();
     let stop = rest.find(['"', '\n']).unwrap_or(rest.len());
@@ -71,7 +71,7 @@ pub(super) fn doc<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> F
     }
 }
 
-/// Skips a block comment; a comment that is never closed extends to the end of the text.
+/// Skips a block comment. A comment that is never closed extends to the end of the text.
 pub(super) fn comment<'s, T: Logos<'s, Source = str>>(lexer: &mut Lexer<'s, T>) -> FilterResult<(), ()> {
     let rest = lexer.remainder();
     match rest.find("*/") {

@@ -1,10 +1,10 @@
-//! Recognizes a single law or condition, as files in other formats contain them.
+//! Recognizes a text that is a single law or condition. Files in other formats contain such texts.
 
 use super::tree::{Condition, ConditionNode, Element, Primary};
 use super::{Arena, arena_for, parse};
 use crate::diagnostic::SourceId;
 
-/// Returns `true` if a text is exactly one law with its arguments, so that it can be inserted into an atom.
+/// Returns `true` if a text is exactly one law with its arguments, and can therefore be inserted into an atom.
 #[must_use]
 pub fn is_law(text: &str) -> bool {
     is_alone(text, "{ P (Atom (null) ", ") }", |element| match element {
@@ -41,8 +41,9 @@ pub fn operands(text: &str) -> Option<Vec<&str>> {
     if is_condition { ranges.iter().map(operand).collect() } else { None }
 }
 
-/// Returns `true` if a text between `before` and `behind` is a plan with one element that `is_good` accepts, both on
-/// one line and with a line break after the text. Then no comment or bracket in the text extends beyond its end.
+/// Inserts a text between `before` and `behind`. Returns `true` if the result is a plan with one element that `is_good`
+/// accepts, both on one line and with a line break after the text. Then no comment or bracket in the text extends
+/// beyond its end.
 fn is_alone(text: &str, before: &str, behind: &str, mut is_good: impl FnMut(&Element<'_>) -> bool) -> bool {
     text.chars().all(mdle_runtime::is_printable)
         && ["", "\n"].iter().all(|end| {

@@ -1,4 +1,4 @@
-//! The place at which the parser found an unexpected token, with the tokens around it.
+//! The site: the place at which the parser found an unexpected token, with the surrounding tokens.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -26,7 +26,7 @@ impl<'s> Site<'_, 's> {
         self.kind(self.at)
     }
 
-    /// Returns the token `back` places before the unexpected token.
+    /// Returns the token that is `back` tokens before the unexpected token.
     pub(super) fn before(&self, back: usize) -> Option<Tok<'s>> {
         self.at.checked_sub(back).and_then(|at| self.kind(at))
     }
@@ -69,8 +69,8 @@ impl<'s> Site<'_, 's> {
         self.before(1) == Some(Tok::LBrace) && self.expects("name") && !self.expects("ExecPlan")
     }
 
-    /// Returns `true` if the site is in the condition of a plan without a name, which looks like a scope in formal
-    /// notation.
+    /// Returns `true` if the site is in the condition of a plan without a name. Such a condition looks like a scope in
+    /// formal notation.
     pub(super) fn in_nameless_head(&self) -> bool {
         let Some(paren) = self.opener().filter(|at| *at > 0 && self.kind(*at) == Some(Tok::LParen)) else {
             return false;
@@ -80,8 +80,8 @@ impl<'s> Site<'_, 's> {
         self.kind(paren - 1) == Some(Tok::LBrace) && is_condition && !is_loop
     }
 
-    /// Returns the index of the token whose region contains the error. For a plan without a name, this is the brace and
-    /// not the token at which the name is missing.
+    /// Returns the index of the token that determines the region of the error; each region gets one error only. For a
+    /// plan without a name, this token is the opening brace, not the token after it.
     pub(super) fn decisive(&self) -> usize {
         if self.is_plan_without_name() { self.at - 1 } else { self.at }
     }
@@ -132,7 +132,7 @@ impl<'s> Site<'_, 's> {
         self.source.span(TextRange::new(start, start))
     }
 
-    /// Returns the index of the brace that follows a name and a group after the name.
+    /// Returns the index of the brace that follows a name and the group after this name.
     pub(super) fn brace_after_group(&self, name: usize) -> Option<usize> {
         let is_group = matches!(self.kind(name + 1), Some(Tok::LParen | Tok::TouchParen));
         let brace = self.end_of_group(name + 1) + 1;
@@ -144,7 +144,8 @@ impl<'s> Site<'_, 's> {
         self.plans.get_or_init(|| header::names(self.tokens)).contains(name)
     }
 
-    /// Returns `true` if the tokens look like quarks and comparisons: names, values, and operators between them.
+    /// Returns `true` if the tokens look like quarks and comparisons: they are names, values, and operators between
+    /// them.
     pub(super) fn is_call(&self, first: usize, last: usize) -> bool {
         let is_value = |at: usize| {
             (first..=last).contains(&at)
@@ -183,12 +184,12 @@ impl<'s> Site<'_, 's> {
         at + 1 < self.tokens.len() && self.place(at).end == self.place(at + 1).start
     }
 
-    /// Returns a message about the token at `at`.
+    /// Creates a message about the token at `at`.
     pub(super) fn about(&self, at: usize, message: impl Into<String>, here: impl Into<String>) -> Diagnostic {
         Diagnostic::new(Code::E0102, message, self.source.span(self.place(at)), here)
     }
 
-    /// Returns `diagnostic` with a label for the token at `at`.
+    /// Returns `diagnostic` with an additional label for the token at `at`.
     pub(super) fn also(&self, diagnostic: Diagnostic, at: usize, text: &str) -> Diagnostic {
         diagnostic.also(self.source.span(self.place(at)), text)
     }
@@ -204,7 +205,7 @@ impl<'s> Site<'_, 's> {
         self.about(self.at, message, "not expected here")
     }
 
-    /// Returns the unexpected token as words of a message.
+    /// Returns the unexpected token in the words of a message.
     pub(super) fn found_words(&self) -> String {
         let Some(found) = self.found() else { return "the end of the file".to_owned() };
         let text = self.text(self.at, self.at).unwrap_or("…");
@@ -218,7 +219,7 @@ impl<'s> Site<'_, 's> {
         }
     }
 
-    /// Returns in words the terminals that the grammar allows at the site.
+    /// Returns the terminals that the grammar allows at the site, in the words of a message.
     pub(super) fn expectation(&self) -> String {
         let before = self.at.checked_sub(1).and_then(|before| self.kind(before));
         let mut left: Vec<&str> = self.expected.iter().map(|terminal| terminal.trim_matches('"')).collect();
@@ -244,7 +245,8 @@ impl<'s> Site<'_, 's> {
     }
 }
 
-/// Names for sets of terminals: the terminals that indicate the set, its name, and the terminals that it includes.
+/// Names for sets of terminals. Each entry contains the terminals that indicate the set, the name of the set, and the
+/// terminals that the set includes.
 const WHOLES: &[(&[&str], &str, &[&str])] = &[
     (&["ExecPlan"], "an element", &["name", "{", "(", "ExecPlan", "FRAME", "label"]),
     (&["use", "{"], "a plan", &["use", "label", "{"]),

@@ -16,11 +16,11 @@ pub(super) struct FileText<'s> {
 pub(super) struct TextRange {
     /// Offset of the first byte.
     pub(super) start: usize,
-    /// Offset after the last byte.
+    /// Offset of the first byte after the range.
     pub(super) end: usize,
 }
 
-/// A boundary between tokens, as the number of tokens and of bytes before it.
+/// A boundary between tokens, given by the number of tokens and of bytes before it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Location {
     /// Number of tokens before the boundary.
@@ -30,20 +30,20 @@ pub(super) struct Location {
 }
 
 impl Location {
-    /// Returns the location before token number `token`, which begins at `byte`, or after the previous token, which
-    /// ends at `byte`.
+    /// Creates the location before the token with the index `token`, which begins at `byte`, or after the previous
+    /// token, which ends at `byte`.
     pub(super) fn new(token: usize, byte: usize) -> Self {
         Self { token: offset(token), byte: offset(byte) }
     }
 }
 
-/// Converts an offset to 32 bits, as in spans and locations.
+/// Converts an offset to 32 bits, the size in spans and locations.
 fn offset(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
 
 impl TextRange {
-    /// Returns the place between two byte offsets.
+    /// Creates the place between two byte offsets.
     pub(super) fn new(start: usize, end: usize) -> Self {
         Self { start, end }
     }
@@ -55,8 +55,8 @@ impl TextRange {
 }
 
 impl<'s> FileText<'s> {
-    /// Returns a source. Because spans have 32 bits, messages about a text that ends beyond 4 GiB point to the first
-    /// file.
+    /// Creates the text of a file with this identifier. Because spans have 32 bits, messages about a text that ends
+    /// beyond 4 GiB point to the first file.
     pub(super) fn new(id: SourceId, text: &'s str) -> Self {
         let fits = u32::try_from(text.len()).is_ok_and(|length| id.0.checked_add(length).is_some());
         Self { id: if fits { id } else { SourceId(0) }, text }

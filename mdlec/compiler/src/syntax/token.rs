@@ -54,9 +54,9 @@ pub(super) enum Tok<'s> {
     SigmaNull,
     #[regex(r"[\p{L}_][\p{L}\p{M}\p{Nd}_]*")]
     Name(&'s str),
-    /// `Group` after a plan's brace and before a square bracket; a name anywhere else.
+    /// `Group` between a plan's brace and a square bracket; anywhere else, it is a name.
     Group,
-    /// The dot between a robot and its signal; never reaches the parser.
+    /// The dot between a robot and its signal. The parser never receives it.
     #[token(".")]
     Dot,
     /// A name or a command that continues as a label; see [`super::label::label_length`].
@@ -112,16 +112,16 @@ pub(super) enum Tok<'s> {
     #[token("≥")]
     #[token(r"\geq")]
     GreaterOrEqual,
-    /// A doc comment, which the parser never receives.
+    /// A doc comment. The parser never receives it.
     #[regex(r"///[^\n]*", doc, allow_greedy = true, priority = 20)]
     Doc(&'s str),
-    /// The start of `\text{…}`, which the parser never receives.
+    /// The start of `\text{…}`. The parser never receives it.
     #[regex(r"\\text\s*\{")]
     Text,
     /// A block comment that is not terminated; terminated comments are skipped.
     #[token("/*", comment)]
     Comment,
-    /// A typesetting command that is not part of MDLe, which the parser never receives.
+    /// A typesetting command that is not part of MDLe. The parser never receives it.
     #[regex(r"\\[A-Za-z]+", priority = 1)]
     Command,
 }

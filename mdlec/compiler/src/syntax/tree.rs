@@ -6,22 +6,22 @@
 
 use crate::diagnostic::Span;
 
-/// A node with the place where it is written.
+/// A node with its span in the text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Spanned<T> {
-    /// Node of the tree, without its place.
+    /// Node of the tree, without its span.
     pub node: T,
     /// Span of the node.
     pub span: Span,
 }
 
-/// A name as it is written.
+/// A name as written.
 pub type Name<'s> = Spanned<&'s str>;
 
 /// A plan file, with the syntax `{ use | plan }`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct File<'s> {
-    /// Names of the used files, as written in quotes.
+    /// Names of the used files, as written between the quotes.
     pub uses: Vec<Name<'s>>,
     /// Plans of the file, in order.
     pub plans: Vec<Plan<'s>>,
@@ -38,7 +38,7 @@ pub struct Plan<'s> {
     pub label: Option<Name<'s>>,
     /// Name of the plan.
     pub name: Name<'s>,
-    /// Robots of the plan of a group, as written between its brackets; `None` for the plan of one robot.
+    /// Robots of a group, as written between the brackets of the group's plan; `None` for the plan of one robot.
     pub group: Option<&'s [Arg<'s>]>,
     /// Parameters of the plan.
     pub params: &'s [Param<'s>],
@@ -73,16 +73,16 @@ pub struct Element<'s> {
 /// Optional parts of an element: label, frame and loop count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Marks<'s> {
-    /// Label to which `after` refers.
+    /// Label of the element, to which `after` can refer.
     pub label: Option<Name<'s>>,
     /// Frame of the element.
     pub frame: Option<Frame<'s>>,
-    /// Loop count after `^`: the number of times that the element runs.
+    /// Loop count after `^`, which is the number of times that the element runs.
     pub power: Option<Count<'s>>,
 }
 
 impl<'s> Element<'s> {
-    /// Returns the label to which `after` refers.
+    /// Returns the label of the element, to which `after` can refer.
     #[must_use]
     pub fn label(&self) -> Option<Name<'s>> {
         self.marks?.label
@@ -94,7 +94,7 @@ impl<'s> Element<'s> {
         self.marks?.frame.as_ref()
     }
 
-    /// Returns the loop count after `^`: the number of times that the element runs.
+    /// Returns the loop count after `^`, which is the number of times that the element runs.
     #[must_use]
     pub fn power(&self) -> Option<&'s Count<'s>> {
         self.marks?.power.as_ref()
@@ -106,26 +106,26 @@ impl<'s> Element<'s> {
 pub enum Frame<'s> {
     /// The enclosing frame, turned by this angle.
     Turned(Number<'s>),
-    /// The robot's heading at the moment when the element is entered.
+    /// The robot's heading at the time when the element is entered.
     Here,
 }
 
-/// Main part of an element. It is stored as a reference, so that a list of elements is short.
+/// Main part of an element. It is stored as a reference, so that a list of elements needs little memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Primary<'s> {
     /// An atom, with the syntax `(Atom condition control)`.
     Atom(&'s Atom<'s>),
     /// A behavior that is defined inside the string.
     Plan(&'s Plan<'s>),
-    /// A plan by name, with its arguments if it has arguments.
+    /// A plan used by name, with its arguments if it has any.
     Ref(&'s Call<'s>),
     /// A loop, with the syntax `ExecPlan n { … }` or `ExecPlan n Name`.
     Exec(&'s Exec<'s>),
     /// An open string in parentheses.
     String(&'s &'s [Element<'s>]),
-    /// Formal notation, `(s, ξ, T)`, or `(u, ξ, T)` with a single call `u`.
+    /// Formal notation: `(s, ξ, T)`, or `(u, ξ, T)` with a single call `u`.
     Formal(&'s Formal<'s>),
-    /// Text that could not be read; a diagnostic gives the reason.
+    /// Text that could not be parsed; a diagnostic gives the reason.
     Broken,
 }
 
@@ -143,14 +143,14 @@ pub struct Atom<'s> {
 pub struct Exec<'s> {
     /// Number of passes.
     pub count: Count<'s>,
-    /// Body of the loop; a plan by name is a single element.
+    /// Body of the loop. A plan used by name is a single element.
     pub body: &'s [Element<'s>],
 }
 
 /// A scope or an atom in formal notation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Formal<'s> {
-    /// String of the scope, or a single [`Primary::Ref`] that may be a law.
+    /// String of the scope, or a single [`Primary::Ref`], which may be a law.
     pub body: &'s [Element<'s>],
     /// Interrupt of the scope or atom.
     pub condition: Condition<'s>,
@@ -170,13 +170,13 @@ pub struct Condition<'s> {
 /// Kind of a condition with its operands; OR and AND have at least two operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConditionNode<'s> {
-    /// A disjunction, which fires if at least one operand holds.
+    /// A disjunction, which fires if at least one operand fires.
     Or(&'s &'s [Condition<'s>]),
-    /// A conjunction, which fires if all operands hold.
+    /// A conjunction, which fires if all operands fire.
     And(&'s &'s [Condition<'s>]),
-    /// A negation, which fires if the operand does not hold.
+    /// A negation, which fires if the operand does not fire.
     Not(&'s Condition<'s>),
-    /// RISING, which fires if the operand holds and did not hold in an earlier turn of the scope.
+    /// RISING, which fires if the operand fires and did not fire in an earlier turn of the scope.
     Rising(&'s Condition<'s>),
     /// An interrupt quark.
     Call(&'s Call<'s>),
@@ -186,7 +186,7 @@ pub enum ConditionNode<'s> {
     Null,
     /// A test of a record, with the syntax `after LABEL [cause]`.
     After(&'s After<'s>),
-    /// Text that could not be read; a diagnostic gives the reason.
+    /// Text that could not be parsed; a diagnostic gives the reason.
     Broken,
 }
 
@@ -206,7 +206,7 @@ pub struct Compared<'s> {
 pub struct After<'s> {
     /// Label of the element that must have ended last.
     pub label: Name<'s>,
-    /// Operand that must have caused the end of the element; `None` if any cause counts.
+    /// Operand that must have caused the end of the element; `None` if any cause is accepted.
     pub cause: Option<Condition<'s>>,
 }
 
@@ -224,7 +224,7 @@ pub enum Operand<'s> {
 /// Operator of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Comparison {
-    /// The operator `==`, within the signal's tolerance.
+    /// The operator `==`, which allows a difference up to the signal's tolerance.
     Equal,
     /// The operator `<`.
     Less,
@@ -237,7 +237,7 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// Returns the operator as it is written.
+    /// Returns the operator as written.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -255,7 +255,7 @@ impl Comparison {
 pub struct Call<'s> {
     /// Name of the quark, signal or plan.
     pub name: &'s str,
-    /// Arguments, without parentheses around several arguments, which have no meaning.
+    /// Arguments of the call. Parentheses around several arguments are omitted, because they have no meaning.
     pub args: &'s [Arg<'s>],
     /// Span from the name to the last argument or the closing parenthesis.
     pub span: Span,
@@ -275,7 +275,7 @@ impl Call<'_> {
 pub enum Arg<'s> {
     /// A number, or bits if the parameter has that type.
     Number(Number<'s>),
-    /// An infinite value: `inf` or another spelling of it.
+    /// An infinite value: `inf`, or another spelling of `inf`.
     Infinity(Span),
     /// A string, without the quotes.
     String(Name<'s>),
@@ -307,7 +307,7 @@ pub struct Number<'s> {
 }
 
 impl<'s> Number<'s> {
-    /// Returns the number with this text: digits, and optionally a unit.
+    /// Creates the number with this text: digits, and optionally a unit.
     #[must_use]
     pub fn new(text: &'s str, span: Span) -> Self {
         Self { text, span }
@@ -332,7 +332,7 @@ impl<'s> Number<'s> {
 pub enum Count<'s> {
     /// A number, with the digits as written.
     Number(Number<'s>),
-    /// An infinite count, `inf`: the loop never ends.
+    /// An infinite count, `inf`, which means that the loop never ends.
     Infinity(Span),
     /// A parameter's name.
     Name(Name<'s>),

@@ -8,7 +8,7 @@ use crate::diagnostic::Span;
 /// Index of a list's first node in its stack.
 pub(super) type First = usize;
 
-/// Stacks of waiting nodes in the order of the text; a nested list is complete before the enclosing list.
+/// Stacks of waiting nodes in the order of the text. A nested list is completed before its enclosing list.
 pub(super) struct WaitingNodes<'s> {
     pub(super) args: Vec<Arg<'s>>,
     pub(super) conditions: Vec<Condition<'s>>,
@@ -49,7 +49,7 @@ impl<'s> WaitingNodes<'s> {
         self.elements.len() - 1
     }
 
-    /// Removes nodes that begin at the empty place `at` or after it; an empty node that ends at this place is kept.
+    /// Removes the nodes that begin at or after the empty place `at`. An empty node that ends at this place is kept.
     pub(super) fn forget(&mut self, at: Span) {
         forget(&mut self.args, at, Arg::span);
         forget(&mut self.conditions, at, |condition| condition.span);

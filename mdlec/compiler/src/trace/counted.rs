@@ -1,5 +1,6 @@
-//! The machine `counted`: the run-time system's machine runs a lowered plan, with loops as the paper's counters
-//! (docs/src/reference/semantics.md, 9). Robots run the same machine; in a trace, a script replaces the robot.
+//! The machine `counted`: the run-time system's machine runs a lowered plan, in which loops are the paper's counters
+//! (docs/src/reference/semantics.md, 9). Robots run the same machine; in a trace, a script takes the place of the
+//! robot.
 
 use mdle_runtime::{
     Begin, Cause, Cursor, Ending, Fsm, Here, Measured, Nanometers, Nanos, Pose, Stamp, Stamps, Transition, Turn, Watch,
@@ -13,7 +14,7 @@ use crate::plan::{Interrupt, QuarkId, RecordId, Situation};
 #[derive(Debug)]
 pub struct CountedRun<'p> {
     plan_machine: &'p fsm::Machine,
-    /// The machine; `None` before the first turn, because the machine needs the output of that turn to begin.
+    /// The machine; `None` before the first turn, because it can begin only with the output of that turn.
     machine: Option<mdle_runtime::Machine<Scripted<'p>>>,
 }
 
@@ -30,8 +31,8 @@ impl<'p> CountedRun<'p> {
         self.machine.get_or_insert_with(begin).turn(reports, reports.t, watch)
     }
 
-    /// Returns the number of the current atom, as written, from 0; `None` before the first turn and when the plan is
-    /// over.
+    /// Returns the index of the current atom in the order of the plan's text; `None` before the first turn and when the
+    /// plan is over.
     #[must_use]
     pub fn atom(&self) -> Option<u32> {
         self.machine.as_ref()?.atom()
@@ -67,7 +68,7 @@ impl<'p> Machine<'p> for CountedRun<'p> {
 /// Records the transitions of a turn.
 struct TransitionRecorder<'p> {
     plan_machine: &'p fsm::Machine,
-    /// Numbers of the operands that fired for the next transition.
+    /// Numbers of the operands that have fired for the next transition.
     operands: Vec<usize>,
     fired: Vec<Fired<'p>>,
 }
@@ -112,7 +113,7 @@ type Entered<'p> = Stamps<Box<[Stamp]>, &'p [Option<Here>]>;
 
 type CountedCursor<'p> = Cursor<Entered<'p>, Box<[u64]>>;
 
-/// Situation of a condition: a scope's level in the current state, with the reports of the turn.
+/// Situation of a condition: the level of a scope in the current state, and the reports of the turn.
 struct LevelSituation<'r, 'p> {
     scripted: &'r Scripted<'p>,
     cursor: &'r CountedCursor<'r>,
@@ -154,8 +155,7 @@ impl<'p> Scripted<'p> {
         usize::from(level) * self.plan_machine.sizes().memories + memory as usize
     }
 
-    /// Returns the level and the interrupt of the scopes that enclose the current atom, from the atom's own
-    /// scope outwards.
+    /// Returns the levels and interrupts of the scopes that enclose the current atom; the atom's own scope comes first.
     fn scopes(&self, cursor: &CountedCursor) -> impl Iterator<Item = (u16, &'p Interrupt)> + use<'p> {
         let own = self.plan_machine.atom(cursor.atom()).element();
         own.outwards().filter_map(|element| Some((element.level()?, element.interrupt()?)))
@@ -179,7 +179,7 @@ impl<'p> Scripted<'p> {
         (atom.law().completes && y.completed.contains(&atom.law().text)).then_some(Cause::Completed(level))
     }
 
-    /// Records the labelled elements that end with the scope of this cause, and clears the records of nested
+    /// Records the labelled elements that end together with the scope of this cause, and clears the records of nested
     /// scopes.
     fn record(&mut self, cursor: &CountedCursor<'_>, cause: Cause, y: &Reports) {
         let level = cause.level();

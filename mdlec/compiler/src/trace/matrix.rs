@@ -2,9 +2,9 @@
 //! docs/src/reference/semantics.md, 8.4 and 9). It is the oracle for the machines that robots run, and shares no
 //! stepping code with them.
 //!
-//! Of the product `E_i(tm) … E_i(t2) E_i(t1)`, whose factors are the matrices of the interrupts that have fired, in
-//! order, only the column of the first state is computed: `e(t)` is this product applied to `e(0)`. The matrices do not
-//! express which scopes restart when a state is entered.
+//! The factors of the product `E_i(tm) … E_i(t2) E_i(t1)` are the matrices of the interrupts that have fired, in order.
+//! Only the column of the first state is computed: `e(t)` is the product applied to `e(0)`. The matrices do not express
+//! which scopes restart when a state is entered.
 
 use std::collections::BTreeSet;
 
@@ -15,29 +15,29 @@ use crate::diagnostic::Diagnostic;
 use crate::fsm::{Matrices, Transition, UnitVector, matrices};
 use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};
 
-/// A plan as its transition matrices, with the vector to which they are applied.
+/// The transition matrices of a plan, and the vector to which they are applied.
 #[derive(Debug)]
 pub struct MatrixProduct<'p> {
     plan: &'p Plan,
     matrices: Matrices<'p>,
-    /// For each column, the indices of the interrupts that list it, outermost first.
+    /// For each column, the indices of the interrupts that list it; the outermost comes first.
     listing: Vec<Vec<u32>>,
-    /// For each interrupt, the moment at which its scope was entered.
+    /// For each interrupt, the time at which its scope was entered.
     entered: Vec<EntryTime>,
-    /// Memories of RISING that are set. Each has the number of its interrupt and its number in that interrupt.
+    /// Memories of RISING that are set. Each is given by the index of its interrupt and its index in that interrupt.
     risen: BTreeSet<(usize, u32)>,
-    /// Facts that hold in the records of the elements that ended last.
+    /// Facts that are true in the records of the elements that ended last.
     facts: BTreeSet<(RecordId, u32)>,
     /// The product so far, applied to the first state.
     e: UnitVector,
-    /// `true` from the first turn on.
+    /// `true` once the first turn has begun.
     has_begun: bool,
 }
 
 /// An interrupt whose matrix is the next factor.
 struct Factor<'p> {
     number: usize,
-    /// Text of the interrupt for the trace.
+    /// Text of the interrupt, as the trace shows it.
     by: &'p str,
     /// Texts of the interrupt's operands that have fired.
     operands: Vec<String>,
@@ -45,7 +45,7 @@ struct Factor<'p> {
     operand: Option<u32>,
 }
 
-/// Situation of an interrupt's condition: the state of the product, with the reports of the turn.
+/// Situation of an interrupt's condition: the state of the product, and the reports of the turn.
 struct ProductSituation<'t, 'p> {
     product: &'t MatrixProduct<'p>,
     number: usize,
@@ -90,13 +90,13 @@ impl<'p> MatrixProduct<'p> {
         Ok(Self { plan: plan.plan(), matrices, listing, entered, risen, facts, e, has_begun: false })
     }
 
-    /// Returns the numbers of the interrupts whose matrices list the column of the state.
+    /// Returns the indices of the interrupts whose matrices list the column of the current state.
     fn listed(&self) -> impl DoubleEndedIterator<Item = usize> + use<'_, 'p> {
         self.listing[self.e.row].iter().map(|number| *number as usize)
     }
 
-    /// Returns the fired interrupt with the lowest number, or else the completion of the current atom's law;
-    /// `None` if neither has happened.
+    /// Returns the fired interrupt with the lowest index, or else the completion of the current atom's law; `None` if
+    /// neither has happened.
     fn fired(&self, y: &Reports) -> Option<Factor<'p>> {
         for number in self.listed() {
             let (interrupt, at) =
@@ -122,8 +122,8 @@ impl<'p> MatrixProduct<'p> {
         self.matrices.laws.iter().copied().nth(self.e.row).map(|law| self.plan.quark(law))
     }
 
-    /// Returns the frame of the law if an enclosing scope has `FRAME here`. The innermost of these scopes has the
-    /// highest number.
+    /// Returns the frame of the law, if an enclosing scope has `FRAME here`. Among several such scopes, the innermost
+    /// one has the highest number.
     fn frame(&self) -> Option<Frame> {
         let turned = self.matrices.frames.get(self.e.row)?;
         let anew = self.listed().rev().find(|number| self.matrices.transitions[*number].here)?;
@@ -151,7 +151,8 @@ impl<'p> MatrixProduct<'p> {
         }
     }
 
-    /// Sets the memory of each RISING whose operand is false, in the interrupts that list the state's column.
+    /// Sets the memory of each RISING whose operand is false, for all interrupts that list the column of the current
+    /// state.
     fn settle(&mut self, y: &Reports) {
         let mut set = Vec::new();
         for number in self.listed() {
@@ -165,7 +166,7 @@ impl<'p> MatrixProduct<'p> {
         self.risen.extend(set);
     }
 
-    /// Returns the number of the state, from 1.
+    /// Returns the number of the state, counted from 1.
     fn state(&self) -> u64 {
         self.e.row as u64 + 1
     }

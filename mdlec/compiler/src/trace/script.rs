@@ -1,8 +1,8 @@
-//! Reads scripts: the reports of interrupts and laws, turn by turn, as JSON lines (docs/src/reference/interfaces.md,
-//! 3).
+//! Reads scripts (docs/src/reference/interfaces.md, 3). A script contains, turn by turn, the reports of interrupts and
+//! laws as JSON lines.
 //!
-//! Once a script is read, its times are in nanoseconds since the first turn and its path lengths in nanometres; neither
-//! ever decreases.
+//! Once a script has been read, its times are in nanoseconds since the first turn, and its path lengths are in
+//! nanometres; neither ever decreases.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -17,7 +17,7 @@ use crate::plan::{Plan, Words};
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Script {
     turns: Vec<Reports>,
-    /// Line number of each turn, from 1.
+    /// Line number of each turn, counted from 1.
     lines: Vec<usize>,
 }
 
@@ -26,7 +26,7 @@ pub struct Script {
 pub struct Reports {
     /// Time since the first turn.
     pub t: Nanos,
-    /// Reading of the odometer: the length of the path driven so far.
+    /// Reading of the odometer: the length of the driven path so far.
     pub way: Nanometers,
     /// Heading by odometry.
     pub heading: Radians,
@@ -36,7 +36,7 @@ pub struct Reports {
     pub completed: BTreeSet<String>,
 }
 
-/// Moment at which a scope was entered, as all machines except `counted` keep it.
+/// Data about the time at which a scope was entered. All machines except `counted` store it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct EntryTime {
     t: Nanos,
@@ -45,34 +45,34 @@ pub(super) struct EntryTime {
 }
 
 impl EntryTime {
-    /// Returns `true` if at least `nanos` nanoseconds have passed since this moment.
+    /// Returns `true` if at least `nanos` nanoseconds have passed since the scope was entered.
     pub(super) fn waited(self, nanos: u64, now: &Reports) -> bool {
         self.since(now) >= Nanos(nanos)
     }
 
-    /// Returns `true` if at least `nanometers` nanometres have been driven since this moment.
+    /// Returns `true` if the robot has driven at least `nanometers` nanometres since the scope was entered.
     pub(super) fn driven(self, nanometers: u64, now: &Reports) -> bool {
         self.way_since(now) >= Nanometers(nanometers)
     }
 
-    /// Returns the time that has passed since this moment.
+    /// Returns the time since the scope was entered.
     pub(super) fn since(self, now: &Reports) -> Nanos {
         now.t.since(self.t)
     }
 
-    /// Returns the length of the path driven since this moment.
+    /// Returns the length of the path that was driven since the scope was entered.
     pub(super) fn way_since(self, now: &Reports) -> Nanometers {
         now.way.since(self.way)
     }
 
-    /// Returns the frame with the heading of this moment, turned counter-clockwise by `turned` radians.
+    /// Returns the frame of the heading at which the scope was entered, turned counter-clockwise by `turned` radians.
     pub(super) fn frame(self, turned: f64) -> Frame {
         Frame(self.heading).turned(Radians(turned))
     }
 }
 
 impl Reports {
-    /// Returns the moment of this turn.
+    /// Returns the data for a scope that is entered in this turn.
     pub(super) fn moment(&self) -> EntryTime {
         EntryTime { t: self.t, way: self.way, heading: self.heading }
     }
@@ -81,7 +81,7 @@ impl Reports {
 /// An error in a script.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScriptError {
-    /// Line number, from 1.
+    /// Line number, counted from 1.
     pub line: usize,
     /// Description of the error.
     pub message: String,
@@ -95,7 +95,7 @@ impl fmt::Display for ScriptError {
 
 impl std::error::Error for ScriptError {}
 
-/// A line as written; a missing list is empty.
+/// A line of a script as written. A missing list is empty.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ScriptLine {
@@ -113,7 +113,7 @@ struct ScriptLine {
 }
 
 impl Script {
-    /// Reads a script: one object per line; empty lines are ignored.
+    /// Reads a script, which contains one object per line; empty lines are ignored.
     ///
     /// # Errors
     /// Fails at the first line that is not a valid object, or whose time or path length is less than in the previous
@@ -156,7 +156,7 @@ impl Script {
         self
     }
 
-    /// Replaces the names in the script by quark texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
+    /// Replaces the names in the script with quark texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
     ///
     /// # Errors
     /// Fails at the first name that is neither an interrupt of the plan nor a law of the plan that completes.
@@ -179,8 +179,8 @@ impl Script {
     }
 }
 
-/// Converts seconds or metres to billionths; `None` if the number is negative or too large. Starts from the shortest
-/// decimal, which is the number as written, so that rounding occurs only once.
+/// Converts seconds or metres to billionths; `None` if the number is negative or too large. Converts the shortest
+/// decimal form of the number, which is the number as written, so that rounding occurs only once.
 fn nanos(seconds: f64) -> Option<u64> {
     Decimal::parse(&seconds.to_string())?.to_nanos()
 }
@@ -201,8 +201,8 @@ fn written(line: &str) -> Result<ScriptLine, String> {
     })
 }
 
-/// Returns the message of the JSON parser, with the column only: the line is always 1, as each line is parsed
-/// by itself.
+/// Returns the message of the JSON parser with the column only. The line in the message would always be 1, because each
+/// line is parsed by itself.
 fn reason(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let message = message.split_once(" at line ").map_or(&*message, |(message, _)| message);

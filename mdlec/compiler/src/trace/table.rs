@@ -2,7 +2,7 @@
 //! (docs/src/reference/semantics.md, 8 and 9).
 //!
 //! The table contains the destination of each interrupt, the scopes that restart there, and the elements that end on
-//! the way. All are computed in advance, so a turn only reads the table.
+//! the way. All of this is computed in advance, so a turn only reads the table.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,21 +14,21 @@ use crate::diagnostic::Diagnostic;
 use crate::fsm::expanded_states;
 use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Plan, Quark, QuarkId, Record, RecordId, Scope, Situation};
 
-/// A plan as a table, with the current state.
+/// A plan as a table, and the current state.
 #[derive(Debug)]
 pub struct TableMachine<'p> {
     plan: &'p Plan,
-    /// States except the termination state, in order.
+    /// All states except the termination state, in order.
     states: Vec<AtomState<'p>>,
-    /// Interrupts, numbered in pre-order: a scope before its elements.
+    /// Interrupts in pre-order: the interrupt of a scope comes before those of its elements.
     rows: Vec<InterruptRow<'p>>,
     /// For each row, the memory of its scope since the scope was entered.
     memories: Vec<ScopeMemory>,
-    /// For each record, a list with `true` for each fact that holds.
+    /// For each record, a list that contains `true` for each fact that is true.
     records: BTreeMap<RecordId, Vec<bool>>,
-    /// Index of the current state in `states`; the length of `states` when the plan has ended.
+    /// Index of the current state in `states`. When the plan has ended, this is the length of `states`.
     state: usize,
-    /// `true` from the first turn on.
+    /// `true` once the first turn has begun.
     has_begun: bool,
 }
 
@@ -38,10 +38,10 @@ struct AtomState<'p> {
     law: &'p Quark,
     /// Row of the atom's own interrupt.
     own: usize,
-    /// Angle by which the state's frame is turned, in radians.
+    /// Angle, in radians, by which the state's frame is turned.
     turned: f64,
-    /// Row of the innermost scope with `FRAME here` that contains the state, perhaps the row of the atom itself; `None`
-    /// if there is no such scope.
+    /// Row of the innermost scope with `FRAME here` that contains the state, which may be the row of the atom itself;
+    /// `None` if there is no such scope.
     here: Option<usize>,
 }
 
@@ -55,8 +55,8 @@ struct InterruptRow<'p> {
     /// Record that is kept with the row's scope; `None` if the scope has no record.
     record: Option<Record>,
     next: RowDestination,
-    /// Labels of the row's scope. `ends_with` holds the labels of the elements that end with this scope, because it is
-    /// their last element.
+    /// Labels of the row's scope. `ends_with` contains the labels of the elements that end with this scope because it
+    /// is their last element.
     marks: &'p [Mark],
     ends_with: Vec<&'p Mark>,
 }
@@ -65,8 +65,7 @@ struct InterruptRow<'p> {
 #[derive(Debug, Clone)]
 struct RowDestination {
     state: usize,
-    /// Range of the rows whose scopes restart: scopes that open together form a range, since rows are in
-    /// pre-order.
+    /// Range of the rows whose scopes restart. Scopes that open together form a range, because rows are in pre-order.
     afresh: Range<usize>,
 }
 
@@ -87,7 +86,7 @@ struct FiredRow<'p> {
     operand: Option<u32>,
 }
 
-/// Situation of a row's condition: the table and the row's memory, with the reports of the turn.
+/// Situation of a row's condition: the table, the row's memory, and the reports of the turn.
 struct RowSituation<'t, 'p> {
     table: &'t TableMachine<'p>,
     memory: &'t ScopeMemory,
@@ -137,7 +136,7 @@ impl<'p> TableMachine<'p> {
         Ok(Self { plan, memories: rows.iter().map(fresh).collect(), records, states, rows, state: 0, has_begun: false })
     }
 
-    /// Returns the rows of the scopes that enclose the current state, from the inside outwards.
+    /// Returns the rows of the scopes that enclose the current state; the innermost comes first.
     fn around(&self) -> impl Iterator<Item = usize> {
         let own = self.states.get(self.state).map(|state| state.own);
         std::iter::successors(own, |row| self.rows[*row].around)
@@ -176,7 +175,7 @@ impl<'p> TableMachine<'p> {
         self.state = state;
     }
 
-    /// Replaces the records whose labelled elements end with this row.
+    /// Replaces the records that contain labels of elements that end with this row.
     fn record(&mut self, ending: &FiredRow<'p>) {
         let InterruptRow { marks, ends_with, .. } = &self.rows[ending.row];
         let own = marks.iter().map(|mark| (mark, ending.operand));
@@ -206,7 +205,7 @@ impl<'p> TableMachine<'p> {
         set.into_iter().for_each(|(row, memory)| self.memories[row].rising[memory] = true);
     }
 
-    /// Returns the number of the current state, from 1.
+    /// Returns the number of the current state, counted from 1.
     fn number(&self) -> u64 {
         self.state as u64 + 1
     }
@@ -236,7 +235,7 @@ impl<'p> Machine<'p> for TableMachine<'p> {
     }
 }
 
-/// Returns a record in which no element has ended.
+/// Returns a record for the case that no element has ended.
 fn empty(record: Record) -> Vec<bool> {
     vec![false; record.facts as usize]
 }
@@ -285,8 +284,7 @@ impl<'p> Filling<'p> {
         }
     }
 
-    /// Appends the elements of an endless loop once; the rows that end a pass lead back to the loop's first
-    /// state.
+    /// Appends the elements of an endless loop once. The rows that end a pass lead back to the loop's first state.
     fn without_end(&mut self, body: &'p [Node], around: usize, here: Option<usize>) {
         let (state, from) = (self.states.len(), self.rows.len());
         self.sequence(body, around, here);
@@ -304,7 +302,8 @@ impl<'p> Filling<'p> {
         row
     }
 
-    /// Adds `marks` to the rows that have just ended: the element with these labels ends with its last element.
+    /// Adds `marks` to the rows that have just ended, because the element with these labels ends together with its last
+    /// element.
     fn ends_too(&mut self, marks: &'p [Mark]) {
         for row in self.ended.iter().filter(|_| !marks.is_empty()) {
             self.rows[*row].ends_with.extend(marks);

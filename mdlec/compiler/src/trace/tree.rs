@@ -1,6 +1,6 @@
-//! The machine `tree`: walks over the plan as written, without expansion or removal of degeneracy
-//! (docs/src/reference/semantics.md, 2 to 6). It is the reference for all other machines, and shares no
-//! stepping code with them.
+//! The machine `tree`: walks over the plan as written, without expanding loops or removing degeneracy
+//! (docs/src/reference/semantics.md, 2 to 6). It is the reference for all other machines, and shares no stepping code
+//! with them.
 
 mod steps;
 
@@ -16,13 +16,13 @@ use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Sc
 #[derive(Debug, Clone)]
 pub struct TreeWalk<'p> {
     plan: &'p Plan,
-    /// Scopes, loops and atoms of the plan: the plan itself first, and each element before its nested elements. The
-    /// list is flat because a plan may be nested more deeply than the stack allows for recursion.
+    /// Scopes, loops and atoms of the plan. The plan itself comes first, and each element comes before its nested
+    /// elements. The list is flat because a plan may be nested more deeply than the stack allows for recursion.
     elements: Arc<[TreeElement<'p>]>,
-    /// Open elements, outermost first; the last is the current atom. Empty before the first turn and after the plan has
-    /// ended.
+    /// Open elements (elements that have been entered and have not ended); the outermost comes first, and the current
+    /// atom last. Empty before the first turn and after the plan has ended.
     open: Vec<EnteredElement>,
-    /// `true` from the first turn on.
+    /// `true` once the first turn has begun.
     has_begun: bool,
 }
 
@@ -32,7 +32,7 @@ struct TreeElement<'p> {
     kind: NodeKind<'p>,
     /// Nodes of the body.
     body: &'p [Node],
-    /// Number of the element that is the first node of the body; the other nodes follow it.
+    /// Index of the element that is the first node of the body; the elements of the other nodes follow it.
     held: usize,
     /// Number of states in the expanded plan; for a loop, the number of states of one pass.
     states: u64,
@@ -45,22 +45,22 @@ enum NodeKind<'p> {
     Atom(&'p Atom),
 }
 
-/// An element that has been entered.
+/// An element that has been entered and has not ended.
 #[derive(Debug, Clone)]
 struct EnteredElement {
     element: usize,
     entered: EntryTime,
-    /// Index, in the body, of the nested element that is open.
+    /// Index of the open nested element within the body.
     index: usize,
-    /// For a loop, the number of the current pass, from 1.
+    /// For a loop, the number of the current pass, counted from 1.
     pass: u64,
-    /// Number of the first state of this pass.
+    /// Number of the first state in the current pass.
     first: u64,
-    /// Number of the first state of the open nested element.
+    /// Number of the first state in the open nested element.
     here: u64,
     /// Memories of RISING in the element's interrupt.
     memories: Vec<bool>,
-    /// For the outermost scope of a definition, a list with `true` for each fact of its record that holds.
+    /// For the outermost scope of a definition, a list that contains `true` for each fact in its record that is true.
     facts: Vec<bool>,
 }
 
@@ -69,7 +69,7 @@ struct EndedScope<'p> {
     /// Index of the scope in the list of open elements.
     place: usize,
     level: usize,
-    /// Text of the interrupt for the trace.
+    /// Text of the interrupt, as the trace shows it.
     by: &'p str,
     /// Operands of the scope's interrupt that have fired.
     operands: Vec<String>,
@@ -77,7 +77,7 @@ struct EndedScope<'p> {
     operand: Option<u32>,
 }
 
-/// Situation of a condition: an open element, with the reports of the turn.
+/// Situation of a condition: an open element, and the reports of the turn.
 struct ElementSituation<'t, 'p> {
     tree: &'t TreeWalk<'p>,
     open: &'t EnteredElement,
@@ -108,13 +108,13 @@ impl Situation for ElementSituation<'_, '_> {
 }
 
 impl<'p> TreeWalk<'p> {
-    /// Returns the walk before its first turn.
+    /// Creates the walk before its first turn.
     #[must_use]
     pub fn new(plan: &'p Plan) -> Self {
         Self { plan, elements: flat(&plan.root).into(), open: Vec::new(), has_begun: false }
     }
 
-    /// Enters an element and all elements that open with it, down to an atom.
+    /// Enters an element, and all nested elements down to an atom.
     fn enter(&mut self, element: usize, first: u64, entered: EntryTime) {
         let mut next = Some(element);
         while let Some(element) = next {
@@ -188,8 +188,8 @@ impl<'p> TreeWalk<'p> {
         }
     }
 
-    /// Ends a scope, continues outwards to the first element that has a successor, and enters that successor.
-    /// Returns the number of elements that have stayed open.
+    /// Ends a scope, continues outwards to the first element that has a successor, and enters the successor. Returns
+    /// the number of elements that have stayed open.
     fn leave(&mut self, ending: &EndedScope<'p>, now: EntryTime) -> usize {
         let mut ended = Vec::new();
         let first = self.elements[self.open[ending.place].element].kind;
@@ -223,8 +223,8 @@ impl<'p> TreeWalk<'p> {
         0
     }
 
-    /// Replaces the record of each definition in which labelled elements have ended. `ended` has the labels of each
-    /// ended element, with the operand that ended it.
+    /// Replaces the record of each definition in which labelled elements have ended. `ended` contains the labels of
+    /// each ended element, and the operand that ended it.
     fn record(&mut self, ended: &[(&[Mark], Option<u32>)]) {
         let marks = || ended.iter().flat_map(|(marks, operand)| marks.iter().map(move |mark| (mark, *operand)));
         for open in &mut self.open {
@@ -279,7 +279,7 @@ impl<'p> NodeKind<'p> {
         }
     }
 
-    /// Returns the labels of the elements that end with this element.
+    /// Returns the labels of the elements that end together with this element.
     fn marks(self) -> &'p [Mark] {
         match self {
             Self::Scope(scope) => &scope.marks,
@@ -307,7 +307,8 @@ impl TreeElement<'_> {
     }
 }
 
-/// Returns the elements of a plan, each before its nested elements; the elements of a body are consecutive.
+/// Returns the elements of a plan. Each element comes before its nested elements; the elements of a body are
+/// consecutive.
 fn flat(root: &Scope) -> Vec<TreeElement<'_>> {
     let mut elements = vec![TreeElement { kind: NodeKind::Scope(root), body: &root.body, held: 0, states: 0 }];
     let mut next = 0;

@@ -5,37 +5,37 @@ use std::fmt;
 pub use mdle_runtime::trace::COMPLETED;
 use mdle_runtime::{Frame, Nanos, trace};
 
-/// A transition with the condition texts of the operands that have fired.
+/// A transition, with the condition texts of the operands that have fired.
 pub type Fired<'p> = trace::Fired<'p, Vec<String>>;
 
-/// Result of one turn, with its number and time.
+/// Result of a turn, with the number and time of the turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TraceLine<'p> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub turn: usize,
     /// Time of the turn.
     pub t: Nanos,
-    /// Transitions and input of the machine in this turn.
+    /// Transitions and applied input of the machine in this turn.
     pub outcome: TurnResult<'p>,
 }
 
-/// Transitions and input of a machine in one turn.
+/// Transitions and applied input of a machine in one turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnResult<'p> {
-    /// State at the end of the turn, numbered in the expanded plan.
+    /// Number, in the expanded plan, of the state at the end of the turn.
     pub state: u64,
     /// Input at the end of the turn.
     pub applied: ScriptedInput<'p>,
-    /// Frame of the law, if a law is applied and its atom is inside a `FRAME here`.
+    /// Frame of the applied law, if its atom is inside a `FRAME here`; `None` otherwise.
     pub frame: Option<Frame>,
     /// Transitions of the turn, in order.
     pub fired: Vec<Fired<'p>>,
 }
 
-/// The input of a turn.
+/// The input that is applied in a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ScriptedInput<'p> {
-    /// The law of this quark text.
+    /// The input that the law with this quark text computes.
     Law(&'p str),
     /// The null input, because the turn reached the limit of transitions.
     Cut,

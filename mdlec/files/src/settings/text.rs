@@ -16,14 +16,14 @@ const KEYS: [&str; 5] = ["target", "world", "safety", "options", "modules"];
 pub(super) struct SettingsText {
     pub(super) target: Option<Setting>,
     pub(super) world: Option<Setting>,
-    /// File of the safety rules of a run of `mdle`.
+    /// File of the safety rules for runs of `mdle`.
     pub(super) safety: Option<Setting>,
     pub(super) options: Vec<OptionText>,
     /// Names and command lines of child processes that a run of `mdle` loads as modules.
     pub(super) modules: Vec<(String, Setting)>,
 }
 
-/// A value, with its line number from 1.
+/// A value and its line number, counted from 1.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Setting {
     pub(super) line: usize,
@@ -36,12 +36,13 @@ pub(super) struct OptionText {
     pub(super) line: usize,
     /// Name of the option, without `--`.
     pub(super) name: String,
-    /// Arguments for the executable; none if the option is `false`.
+    /// Arguments for the executable; empty if the option is `false`.
     pub(super) arguments: Vec<String>,
 }
 
 impl OptionText {
-    /// Checks the option against the options of an executable, each of which has the placeholder of its value.
+    /// Checks that the option is one of the options `known` of an executable, each of which has the placeholder of its
+    /// value.
     ///
     /// # Errors
     /// Fails with a message if there is no such option, if its value is missing, or if it has a value and must not have
@@ -66,7 +67,7 @@ impl OptionText {
     }
 }
 
-/// An error, with its line number from 1.
+/// An error and its line number, counted from 1.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct SettingsError {
     pub(super) line: usize,
@@ -112,10 +113,10 @@ fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t TomlKey<'i>, &'t Spanned
     entries
 }
 
-/// A key as TOML represents it.
+/// A key in the form in which the TOML parser returns it.
 type TomlKey<'i> = Spanned<std::borrow::Cow<'i, str>>;
 
-/// Reader of the text of an `mdle.toml`.
+/// Reads the text of an `mdle.toml`.
 struct SettingsReader<'t>(&'t str);
 
 impl SettingsReader<'_> {
@@ -213,7 +214,7 @@ impl SettingsReader<'_> {
         SettingsError { line: self.line(&place.span()), message }
     }
 
-    /// Returns the number of the line in which a span begins, from 1.
+    /// Returns the number of the line in which a span begins, counted from 1.
     fn line(&self, span: &Range<usize>) -> usize {
         self.0.bytes().take(span.start).filter(|byte| *byte == b'\n').count() + 1
     }

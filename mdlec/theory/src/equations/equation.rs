@@ -3,12 +3,13 @@
 
 use super::terms::{Extent, Term, Terms};
 
-/// Maximum number of states whose matrices are printed in the paper's notation; larger matrices do not fit on a line.
+/// Maximum number of states whose matrices are printed in the paper's notation; larger matrices do not fit into a line.
 const STATES: usize = 16;
 /// Maximum length of a line, in characters.
 const WIDTH: usize = 100;
 
-/// Returns the equation with the meaning of its symbols; `None` for a plan with too many states for readable matrices.
+/// Returns the equation and the meaning of its symbols; `None` if the plan has so many states that the matrices would
+/// not be readable.
 #[must_use]
 pub fn equation(terms: &Terms<'_>) -> Option<String> {
     (terms.states() <= STATES).then(|| format!("{}\n{}", sum(terms), symbols(terms)))
@@ -20,7 +21,7 @@ pub fn most_states() -> usize {
     STATES
 }
 
-/// Returns the sum of all terms, with as many terms on a line as fit.
+/// Returns the sum of all terms, with as many terms in each line as fit.
 fn sum(terms: &Terms<'_>) -> String {
     let (height, middle) = (terms.states(), terms.states() / 2);
     if terms.live.is_empty() {
@@ -66,7 +67,7 @@ fn written(lines: &[String]) -> String {
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
-/// Returns the width of a text in columns; a bar over a letter takes no column of its own.
+/// Returns the width of a text in columns; a bar over a letter needs no column of its own.
 fn width(text: &str) -> usize {
     text.chars().filter(|letter| *letter != '\u{304}').count()
 }
@@ -107,7 +108,7 @@ fn symbols(terms: &Terms<'_>) -> String {
     text
 }
 
-/// Returns `true` if several terms have the same text and are not combined because their interrupts have timers.
+/// Returns `true` if several terms have the same text, but are not combined because their interrupts have timers.
 fn is_kept_apart(terms: &[Term<'_>]) -> bool {
     let mut texts: Vec<_> = terms.iter().filter(|term| term.waits).map(|term| term.text).collect();
     texts.sort_unstable();

@@ -1,5 +1,5 @@
-//! The transition matrices of a plan as MatrixMarket coordinate files, one file for each interrupt, and a list of the
-//! files.
+//! Writes the transition matrices of a plan as MatrixMarket coordinate files, one file for each interrupt, and a list
+//! of the files.
 
 use std::fmt::Write;
 
@@ -9,9 +9,9 @@ use super::terms::{Extent, Term, Terms};
 
 /// Version of the list's format.
 const VERSION: u32 = 1;
-/// Maximum total number of ones in all files; each one takes a line.
+/// Maximum total number of ones in all files. Each of them takes a line.
 const ONES: usize = 10_000_000;
-/// Maximum length of a comment, in characters: a line of a MatrixMarket file has at most 1024 bytes.
+/// Maximum length of a comment, in characters: a line of a MatrixMarket file may have at most 1024 bytes.
 const COMMENT: usize = 200;
 
 /// Files of a plan's matrices.
@@ -48,7 +48,7 @@ struct MatrixEntry<'t> {
     places: Vec<ScopeStates<'t>>,
 }
 
-/// Range of the states of a scope, which count from 1.
+/// Range of the states of a scope, which are counted from 1.
 #[derive(Debug, Serialize)]
 struct ScopeStates<'t> {
     number: usize,
@@ -66,7 +66,8 @@ impl MatrixFiles<'_, '_> {
         self.0.live.iter().map(|term| (file_name(term), self.file(term)))
     }
 
-    /// Returns the list: states, laws, and each matrix with its interrupt, its file and the states of its scopes.
+    /// Returns the text of the list. It contains the states, the laws, and each matrix with its interrupt, its file and
+    /// the states of its scopes.
     #[must_use]
     pub fn list(&self) -> String {
         let states = (1..self.0.states()).map(|atom| format!("a{atom}")).chain(["end".to_owned()]);

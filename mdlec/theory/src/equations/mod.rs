@@ -1,5 +1,5 @@
-//! The sum of a plan's transition matrices (paper, Eqs. 2 and 3): its terms, in the paper's notation and as
-//! MatrixMarket files.
+//! The sum of a plan's transition matrices (paper, Eqs. 2 and 3): computes its terms, and prints them in the paper's
+//! notation or as MatrixMarket files.
 
 mod equation;
 mod matrix_market;

@@ -1,7 +1,8 @@
 //! The terms of `Π(t) = Σ E_i ξ̄_i(t)` of a plan (paper, Eq. 2), or of the sum in which equal interrupts are combined
 //! into one term (Eq. 3).
 //!
-//! Terms are numbered as in the FSM file: `x1`, `x2`, … in pre-order, and `completed` for the completion of laws.
+//! Terms have the same names as in the FSM file: `x1`, `x2`, … in the order in which the scopes of the interrupts
+//! begin, and `completed` for the completion of laws.
 
 use std::collections::BTreeMap;
 
@@ -14,11 +15,11 @@ use mdle_compiler::plan::{Condition, Functions, Nondegenerate, Plan};
 pub struct Terms<'p> {
     /// Name of the plan.
     pub source: &'p str,
-    /// Law of each state except the termination state, as the text of a quark.
+    /// Law of each state except the termination state, as the text of its quark.
     pub laws: Vec<&'p str>,
-    /// Terms whose interrupt can fire, in pre-order, completion last.
+    /// Terms whose interrupt can fire, in the order of their numbers. The term for the completion of laws is last.
     pub live: Vec<Term<'p>>,
-    /// Terms whose interrupt never fires: it is null, or was removed because an outer interrupt repeats it.
+    /// Terms whose interrupt never fires: the interrupt is null, or was removed because it repeats an outer interrupt.
     pub never: Vec<Term<'p>>,
     /// `true` if equal interrupts are combined into one term.
     pub combined: bool,
@@ -32,18 +33,18 @@ pub struct Term<'p> {
     pub name: String,
     /// Text of the interrupt's condition.
     pub text: &'p str,
-    /// `true` if the interrupt has a timer, which counts from the start of its scope.
+    /// `true` if the interrupt has a timer, which starts when its scope is entered.
     pub waits: bool,
-    /// Scopes that have the interrupt, from left to right: no state is in two of them (Observation 1).
+    /// Scopes that have the interrupt, from left to right. No state is in two of them (Observation 1).
     pub places: Vec<Extent<'p>>,
 }
 
-/// A scope that has an interrupt. In the interrupt's matrix, it is a range of columns that have their 1 in the same
-/// row. All indices count from 0.
+/// A scope that has an interrupt. In the interrupt's matrix, it corresponds to a range of columns that have their 1 in
+/// the same row. All indices are counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Extent<'p> {
-    /// Number of the interrupt in pre-order, from 1. If several interrupts fire at the same time, the lowest number
-    /// takes effect.
+    /// Number of the interrupt, counted from 1 in the order in which the scopes begin. If several interrupts fire at
+    /// the same time, the lowest number takes effect.
     pub number: usize,
     /// Name of the scope; empty for an atom.
     pub scope: &'p str,
@@ -62,9 +63,9 @@ impl Terms<'_> {
         self.laws.len() + 1
     }
 
-    /// Returns the transition matrix of a term, as the row of the 1 in each column. The matrix is `Σ E_ij − (n−1) I`
-    /// over the scopes of the term (Eq. 3). A column in the range of a scope is the column of this scope's matrix,
-    /// because it is a column of the identity in the matrices of all other scopes.
+    /// Returns the transition matrix of a term, given, for each column, by the row of its 1. The matrix is `Σ E_ij −
+    /// (n−1) I` over the scopes of the term (Eq. 3). A column in the range of a scope equals the column of this scope's
+    /// matrix, because the matrices of all other scopes have there a column of the identity.
     #[must_use]
     pub fn matrix(&self, term: &Term<'_>) -> Vec<usize> {
         let mut rows: Vec<_> = (0..self.states()).collect();
@@ -108,8 +109,8 @@ pub fn terms(plan: &Nondegenerate, combined: bool) -> Result<Terms<'_>, Diagnost
     Ok(Terms { source: &plan.root.name, laws, live, never, combined })
 }
 
-/// Returns the term of the interrupt that fires when a law completes, which ends the atom like the atom's own
-/// interrupt. Returns `None` if no law of the plan can complete.
+/// Returns the term of the interrupt that fires when a law completes, which ends the atom in the same way as the atom's
+/// own interrupt. Returns `None` if no law of the plan can complete.
 fn completion<'p>(plan: &'p Plan, made: &Matrices<'p>) -> Option<Term<'p>> {
     let places = made.completion(plan).map(|(number, matrix)| {
         let (scope, column) = (made.transitions[number].name, *matrix.columns().start());
@@ -126,7 +127,7 @@ mod tests {
     use super::*;
     use crate::samples::compiled;
 
-    /// Returns the matrix that has its 1 in row `rows[j]` of each column `j`, with all zeros.
+    /// Returns the matrix, including its zeros, that has a 1 in row `rows[j]` of each column `j`.
     fn dense(rows: &[usize]) -> DMatrix<i64> {
         DMatrix::from_fn(rows.len(), rows.len(), |row, column| i64::from(rows[column] == row))
     }

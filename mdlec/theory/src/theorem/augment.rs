@@ -1,5 +1,5 @@
-//! Writes any machine as a plan with `after` (paper, below Theorem 1: "auxiliary variables"). The plan is an endless
-//! loop over all states, in which the condition of each state tests which element ended last.
+//! Converts any machine to a plan that uses `after` (paper, below Theorem 1: "auxiliary variables"). The plan is an
+//! endless loop over all states, in which the condition of each state tests which element ended last.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -8,11 +8,11 @@ use super::names::{in_a_comment, texts};
 use super::{COMPLETED, Machine, State};
 use mdle_compiler::syntax::operands;
 
-/// Returns a machine of any shape as a plan. If several interrupts lead from a state, the first in the file takes
-/// precedence.
+/// Returns a plan that is equivalent to a machine of any shape. If several interrupts lead from a state, the first of
+/// them in the file takes precedence.
 ///
-/// The plan has a start state that ends at once, followed by the machine's states in the order of the file. In each
-/// turn the plan is in the same state as the machine, until a turn in which the machine would enter a state twice.
+/// The plan has a start state that ends at once. The machine's states follow in the order of the file. In each turn the
+/// plan is in the same state as the machine, until a turn in which the machine would enter a state twice.
 #[must_use]
 pub fn augment(machine: &Machine) -> String {
     let (texts, mut names) = texts(machine);

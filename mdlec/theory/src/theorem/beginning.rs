@@ -1,14 +1,15 @@
-//! State of the search for an order of a machine's states: a prefix of the order, with its scopes and loops. Computes
-//! the scopes that must end if a given state follows, and checks that they can end (Theorem 1, R1 to R4).
+//! The state of the search for an order of a machine's states: a prefix of the order, with its scopes and loops. Also
+//! computes the scopes that must end if a given state follows the prefix, and checks that they can end (Theorem 1, R1
+//! to R4).
 //!
-//! When scopes and loops end, the range of positions that they enclose is closed. Invariants: all closed ranges are
-//! pairwise nested or disjoint, and each state but the last has an interrupt of its own.
+//! When a scope or a loop ends, the range of positions that it encloses is closed. Two invariants hold: any two closed
+//! ranges are nested or disjoint, and each state except the last has an interrupt of its own.
 
 mod fits;
 
 use super::{Broken, InterruptId, Loop, Machine, ScopeRun, State, Stretch};
 
-/// A scope that has not ended: an interrupt that leads to the state `to` from each position of the order since `first`.
+/// A scope that has not ended. Its interrupt leads to the state `to` from each position of the order from `first` on.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OpenScope {
     interrupt: InterruptId,
@@ -28,7 +29,7 @@ pub(super) struct Boundary {
     widest: Option<usize>,
 }
 
-/// Data for undoing a step.
+/// Data with which a step can be undone.
 #[derive(Default)]
 pub(super) struct Before {
     runs: usize,
@@ -49,8 +50,8 @@ pub(super) struct Beginning<'m> {
     pub(super) loops: Vec<Loop>,
     /// First and last position of each closed range that is not inside another closed range.
     wholes: Vec<(usize, usize)>,
-    /// The interrupt that fires when a law completes, if it may end only atoms; `None` if every interrupt may end any
-    /// scope.
+    /// The interrupt that fires when a law completes, if the search lets it end only atoms; `None` if every interrupt
+    /// may end any scope.
     completed: Option<InterruptId>,
 }
 
@@ -77,12 +78,12 @@ impl<'m> Beginning<'m> {
         self.places[state.0 as usize]
     }
 
-    /// Returns the scopes and loops that end if `next` follows: those that must end and, if given, the open scope
-    /// `extra`. Returns `None` if the scope `extra` must end anyway, or must not end.
+    /// Returns the scopes and loops that end if the state `next` follows: those that must end and, if `extra` is given,
+    /// the open scope with this index. Returns `None` if the scope `extra` must end anyway, or must not end.
     ///
-    /// More than one extra scope is never needed. A scope that ends early provides an interrupt of its own for the
-    /// state at this position or at the next position. If two scopes lead back, one of them suffices for both purposes.
-    /// Two parts of a scope that leads to its own start could be joined instead.
+    /// More than one extra scope is never needed. The reason for ending a scope early is that it provides an interrupt
+    /// of its own for the state at this position or at the next position. If two scopes lead back, one of them suffices
+    /// for both purposes. If a scope leads to its own start, its two parts could be joined instead.
     ///
     /// # Errors
     /// Returns the condition that `next` breaks.
@@ -117,8 +118,8 @@ impl<'m> Beginning<'m> {
         self.ended(open, next, &ends, widest).map(Some)
     }
 
-    /// Returns `true` if a scope would end before `next` although its interrupt also leads to `next` from other states,
-    /// which have no position yet.
+    /// Returns `true` if a scope would end before `next` although its interrupt also leads to `next` from other states
+    /// that have no position yet.
     pub(super) fn ends_too_early(&self, open: &[OpenScope], next: State) -> bool {
         let mut ending = open.iter().filter(|run| run.to == next && self.completed != Some(run.interrupt));
         ending.any(|run| {
@@ -127,8 +128,8 @@ impl<'m> Beginning<'m> {
         })
     }
 
-    /// Returns `true` if an open scope must end if `next` follows. Returns the broken condition if the scope can
-    /// neither end nor continue.
+    /// Returns `true` if the open scope `run` must end before the state `next`. Returns the broken condition if the
+    /// scope can neither end nor continue.
     fn must_end(&self, run: OpenScope, next: State) -> Result<bool, Broken> {
         if run.to == next {
             return Ok(true);
@@ -204,7 +205,8 @@ impl<'m> Beginning<'m> {
         Ok(ending)
     }
 
-    /// Appends a state; returns the scopes that are open at this state, and the data for undoing this step.
+    /// Appends a state; returns the scopes that are open at this state, and the data with which this step can be
+    /// undone.
     pub(super) fn fill(&mut self, ending: Boundary, next: State) -> (Vec<OpenScope>, Before) {
         let place = self.order.len();
         let mut before = Before { runs: self.runs.len(), loops: self.loops.len(), ..Before::default() };
@@ -227,8 +229,8 @@ impl<'m> Beginning<'m> {
     }
 
     /// Returns a hash of all data that determine which states can follow: the states that have a position, the first
-    /// states of the closed ranges, the open scopes, and the last state. The order inside a closed range has no effect
-    /// any longer.
+    /// states of the closed ranges, the open scopes, and the last state. The order of the states inside a closed range
+    /// no longer has an effect.
     pub(super) fn outline(&self, open: &[OpenScope]) -> [u8; 32] {
         let mut placed = vec![0_u8; self.places.len().div_ceil(8)];
         for state in &self.order {

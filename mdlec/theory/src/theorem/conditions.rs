@@ -1,5 +1,5 @@
-//! The conditions of Theorem 1 that a machine breaks (docs/src/reference/semantics.md, 8.5: R1 to R4), each described
-//! in a sentence.
+//! Describes in sentences the conditions of Theorem 1 that a machine breaks (docs/src/reference/semantics.md, 8.5: R1
+//! to R4).
 
 use std::fmt::Write;
 
@@ -19,7 +19,7 @@ pub struct Stretch {
 /// A condition that a machine breaks, with the states and interrupts that break it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Broken {
-    /// This interrupt leads from the termination state to another state.
+    /// An interrupt leads from the termination state to another state; contains the interrupt.
     EndIsLeft(InterruptId),
     /// No interrupt leads from this state to another state.
     NoExit(State),
@@ -38,8 +38,8 @@ pub enum Broken {
         state: State,
         /// Next state in the order.
         next: State,
-        /// An interrupt that leads to the next state both from `state` and from the state before it, with the state
-        /// before it; `None` if there is no such interrupt.
+        /// An interrupt that leads to the next state both from `state` and from the state before it, together with this
+        /// earlier state; `None` if there is no such interrupt.
         shared: Option<(InterruptId, State)>,
     },
     /// An interrupt leads past a state, but does not lead from that state to the same destination.
@@ -52,7 +52,7 @@ pub enum Broken {
         to: State,
         /// State between `from` and `to`.
         past: State,
-        /// State to which the interrupt leads from `past`, if any.
+        /// State to which the interrupt leads from `past`, `None` if it leads nowhere from there.
         other: Option<State>,
     },
     /// The ranges of states that two interrupts enclose overlap, and neither range contains the other.
@@ -97,7 +97,7 @@ pub enum Broken {
         begins: Vec<State>,
         /// States that might follow, each with the condition that it breaks.
         tries: Vec<(State, Broken)>,
-        /// Number of other states that might follow.
+        /// Number of further states that might follow but are not in `tries`.
         more: usize,
     },
 }

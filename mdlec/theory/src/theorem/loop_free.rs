@@ -1,5 +1,5 @@
-//! Theorem 1 without loops (R1 to R3): only one order of the states is possible, and it determines the states that each
-//! interrupt encloses.
+//! Applies Theorem 1 to machines without loops (R1 to R3). Only one order of the states is possible, and it determines
+//! the states that each interrupt encloses.
 
 use std::cmp::Reverse;
 
@@ -73,7 +73,7 @@ fn by_destination(machine: &Machine, order: &[State]) -> Vec<([u32; 2], Vec<usiz
     groups.filter_map(|group| Some((group.first()?.0, group.iter().map(|(_, place)| *place).collect()))).collect()
 }
 
-/// Returns the conditions that states without an interrupt of their own break (R1).
+/// Returns the broken conditions of the states that have no interrupt of their own (R1).
 fn atoms(machine: &Machine, order: &[State], runs: &[ScopeRun]) -> Vec<Broken> {
     let mut has_own = vec![false; order.len()];
     for run in runs.iter().filter(|run| run.first == run.last) {
@@ -91,8 +91,8 @@ fn atoms(machine: &Machine, order: &[State], runs: &[ScopeRun]) -> Vec<Broken> {
     lacking.map(why).collect()
 }
 
-/// Returns the conditions that overlapping runs break if neither contains the other (R3). `runs` are sorted by their
-/// first position, longest first.
+/// Returns the broken conditions of pairs of runs that overlap although neither contains the other (R3). `runs` are
+/// sorted by their first position, longest first.
 pub(super) fn crossings(order: &[State], runs: &[ScopeRun]) -> Vec<Broken> {
     let mut open: Vec<ScopeRun> = Vec::new();
     let mut broken = Vec::new();

@@ -1,5 +1,5 @@
-//! Theorem 1 with endless loops (R4): a backtracking search for an order of the states, which abandons a prefix of an
-//! order if no next state is possible.
+//! Applies Theorem 1 to machines with endless loops (R4), by a backtracking search for an order of the states. The
+//! search abandons a prefix of an order if no next state is possible.
 
 use std::collections::BTreeSet;
 
@@ -16,11 +16,12 @@ const REMEMBERS: u64 = 2_000;
 struct SearchStep {
     /// Scopes that are open at this position.
     open: Vec<OpenScope>,
-    /// Index of the next state to try, among the states to which the last state leads and then all others.
+    /// Index of the next state to try, in a list that begins with the states to which the last state leads, followed by
+    /// all others.
     candidate: usize,
-    /// Index, from 1, of the open scope that ends here in addition to those that must end; 0 for no scope.
+    /// Number, counted from 1, of the open scope that ends here in addition to those that must end; 0 for no scope.
     extra: usize,
-    /// Data for undoing the step.
+    /// Data with which the step can be undone.
     before: Before,
 }
 
@@ -37,7 +38,7 @@ struct LoopSearch<'m> {
     leaves: Leaves,
 }
 
-/// The longest prefix, with the reasons why no state can follow.
+/// The longest prefix found, with the reasons why no state can follow it.
 #[derive(Default)]
 struct Furthest {
     begins: Vec<State>,
@@ -45,11 +46,11 @@ struct Furthest {
     more: usize,
 }
 
-/// Cases that a search omits at first, because most strings are found without them.
+/// Cases that a search omits in its first attempt, because most strings are found without them.
 #[derive(Debug, Clone, Copy)]
 struct Leaves {
-    /// The interrupt that fires when a law completes, if it may end only atoms; `None` if every interrupt may end any
-    /// scope.
+    /// The interrupt that fires when a law completes, if the search lets it end only atoms; `None` if every interrupt
+    /// may end any scope.
     completed: Option<InterruptId>,
     /// `true` if no scope may end before a state to which its interrupt also leads from later states.
     early_ends: bool,
@@ -76,7 +77,7 @@ pub(super) fn search(machine: &Machine, candidates: &[State], steps: u64) -> The
 }
 
 /// Returns the states to which a state leads, without duplicates. The destination of the last interrupt, which is the
-/// innermost interrupt in lowered plans, comes first.
+/// innermost interrupt in machines that were made from plans, comes first.
 fn successors(machine: &Machine, state: State) -> Vec<State> {
     let mut seen = BTreeSet::new();
     machine.exits(state).iter().rev().map(|exit| exit.to).filter(|to| seen.insert(*to)).collect()
@@ -96,7 +97,8 @@ impl<'m> LoopSearch<'m> {
         }
     }
 
-    /// Runs the search from step `taken` to at most step `limit`; returns the answer and the total number of steps.
+    /// Continues the search from step `taken` to at most step `limit`; returns the answer and the total number of
+    /// steps.
     fn run(mut self, taken: u64, limit: u64) -> (TheoremResult, u64) {
         let mut steps = taken;
         let mut path = vec![SearchStep { open: Vec::new(), candidate: 0, extra: 0, before: Before::default() }];
@@ -160,8 +162,8 @@ impl<'m> LoopSearch<'m> {
         }
     }
 
-    /// Returns the scopes and loops that end if `next` follows, together with the next choice of an additional open
-    /// scope; the first choice is no additional scope. Returns `None` if they cannot end.
+    /// Returns the scopes and loops that end if `next` follows. Each call ends another open scope in addition to those
+    /// that must end; the first call ends no additional scope. Returns `None` if they cannot end.
     fn ending(&mut self, step: &mut SearchStep, next: State) -> Option<Boundary> {
         let extra = step.extra.checked_sub(1);
         let result = self.beginning.ending(&step.open, next, extra);

@@ -1,8 +1,8 @@
 //! Theorem 1 in both directions (paper, Theorem 1; docs/src/reference/semantics.md, 8.5): finds the MDLe string of a
 //! machine, or the reasons why it has no string.
 //!
-//! In a string, the positions of the states count from 0, the termination state has the last position, and runs and
-//! loops are pairwise nested or disjoint.
+//! In a string, the positions of the states are counted from 0, the termination state has the last position, and any
+//! two runs or loops are nested or disjoint.
 
 mod augment;
 mod beginning;
@@ -22,7 +22,7 @@ pub use printed::{Rule, as_printed, monomial};
 pub use read::{FileError, read};
 pub use string::string;
 
-/// Default maximum number of steps in the search among orders; these steps take a few seconds.
+/// Default maximum number of steps in the search among orders. This many steps take a few seconds.
 pub const STEPS: u64 = 1_000_000;
 
 /// Name of the interrupt that fires when a law completes; plans do not contain it.
@@ -51,11 +51,11 @@ pub struct Machine {
 pub struct NamedInterrupt {
     /// Name of the interrupt.
     pub name: String,
-    /// Condition of the interrupt; `None` if the file has none.
+    /// Condition of the interrupt; `None` if the file contains none.
     pub text: Option<String>,
 }
 
-/// A transition from a state: an interrupt with its destination.
+/// A transition from a state: an interrupt and its destination.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exit {
     /// Interrupt of the transition.
@@ -86,7 +86,7 @@ pub struct Found {
     pub loops: Vec<Loop>,
 }
 
-/// A scope: an interrupt, and the consecutive positions from which it leads to the same position.
+/// A scope of a string: an interrupt, and the consecutive positions from which it leads to the same position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ScopeRun {
     /// Interrupt of the scope.
@@ -109,7 +109,7 @@ pub struct Loop {
 }
 
 impl Machine {
-    /// Returns a machine with these states and interrupts. Each interrupt has transitions, as pairs of source and
+    /// Creates a machine with these states and interrupts. Each interrupt has its transitions as pairs of source and
     /// destination, at most one from each state. Transitions from or to unknown states are ignored.
     #[must_use]
     pub fn new(states: Vec<String>, interrupts: Vec<(NamedInterrupt, Vec<(State, State)>)>) -> Self {
@@ -162,7 +162,7 @@ impl Machine {
         State(number(self.states.len().saturating_sub(1)))
     }
 
-    /// Returns the state to which an interrupt leads from the state `from`, if it leads anywhere.
+    /// Returns the state to which an interrupt leads from the state `from`, `None` if it leads nowhere.
     fn destination(&self, from: State, interrupt: InterruptId) -> Option<State> {
         let exits = self.exits(from);
         let place = exits.binary_search_by_key(&interrupt, |exit| exit.interrupt).ok()?;
@@ -174,7 +174,7 @@ impl Machine {
         (0..self.end().0).map(State)
     }
 
-    /// Returns the interrupt that fires when a law completes, if the machine has one.
+    /// Returns the interrupt that fires when a law completes, `None` if the machine has no such interrupt.
     fn completed(&self) -> Option<InterruptId> {
         let place = self.interrupts.iter().position(|interrupt| interrupt.name == COMPLETED)?;
         Some(InterruptId(number(place)))
@@ -194,8 +194,8 @@ fn number(place: usize) -> u32 {
     u32::try_from(place).unwrap_or(u32::MAX)
 }
 
-/// Returns the string of a machine, if there is one. For a machine with a cycle, this is a search of at most `steps`
-/// steps; for other machines the string is computed directly.
+/// Returns the string of a machine, if there is one. For a machine with a cycle, the string is searched for in at most
+/// `steps` steps; for other machines the string is computed directly.
 #[must_use]
 pub fn decompile(machine: &Machine, steps: u64) -> TheoremResult {
     let broken = conditions::of_every_order(machine);

@@ -26,7 +26,7 @@ const RESERVED: &[&str] = &[
     "INFINITY",
 ];
 
-/// Names that are in use and, for each name, the number of names that were derived from it.
+/// The names that are in use. For each of them, stores the number of names that were derived from it.
 #[derive(Default)]
 pub(super) struct UsedNames {
     taken: BTreeSet<String>,
@@ -63,7 +63,7 @@ impl UsedNames {
     }
 }
 
-/// Returns the texts of a machine in a plan, and the names that are in use in them.
+/// Returns the texts of a machine in a plan, and the names that these texts use.
 pub(super) fn texts(machine: &Machine) -> (MachineTexts, UsedNames) {
     let mut names = UsedNames::default();
     // Words in the texts are names that are already in use.

@@ -1,9 +1,11 @@
-//! Finds an order of a machine's states in which all interrupts lead forwards, or almost all if there is no such order.
+//! Finds an order of a machine's states in which all interrupts lead forwards or, if there is no such order, in which
+//! most interrupts do.
 
 use super::{Machine, State};
 
-/// Returns the states in an order in which all interrupts lead forwards if the machine has no cycle; the termination
-/// state is last. If there are several such orders, the start state and the order in the file determine the result.
+/// Returns the states in an order whose last state is the termination state. If the machine has no cycle, all
+/// interrupts lead forwards in this order. If there are several such orders, the start state and the order in the file
+/// determine the result.
 pub(super) fn forwards(machine: &Machine) -> Vec<State> {
     let first = machine.start().unwrap_or(State(0));
     let mut seen = vec![false; machine.states().len()];
@@ -50,8 +52,8 @@ pub(super) fn places(order: &[State]) -> Vec<usize> {
     places
 }
 
-/// Returns `true` if every interrupt leads to a later state. If this fails for the order of [`forwards`], it fails for
-/// every order.
+/// Returns `true` if every interrupt leads to a later state. If the result is `false` for the order of [`forwards`], it
+/// is `false` for every order.
 pub(super) fn leads_forwards(machine: &Machine, order: &[State]) -> bool {
     let places = places(order);
     let place = |state: State| places[state.0 as usize];

@@ -1,8 +1,8 @@
-//! Checks the conditions R1 to R4 of Theorem 1 as printed in the paper, on the columns of transition matrices, both
-//! literally and as intended.
+//! Checks the conditions R1 to R4 of Theorem 1 as printed in the paper, using the columns of transition matrices. Each
+//! condition is checked both literally and as intended.
 //!
-//! An interrupt's columns are those in which its matrix differs from the identity. A transition to the same state does
-//! not count, because its column is that of the identity.
+//! An interrupt's columns are those in which its matrix differs from the identity. A transition to the same state is
+//! ignored, because its column is that of the identity.
 
 use super::loop_free::{crossings, cut};
 use super::order::{forwards, places};
@@ -26,9 +26,9 @@ struct Columns<'m> {
     places: Vec<usize>,
 }
 
-/// Checks the printed conditions in the only order in which they can hold, in which all interrupts lead forwards. They
-/// cannot hold for a machine with a cycle. In this case the order is that of the machine's string `exactly` or, if it
-/// has no string, an order in which most interrupts lead forwards.
+/// Checks the printed conditions for the only order of the states in which they can hold: the order in which all
+/// interrupts lead forwards. For a machine with a cycle, they cannot hold. In this case, the order is that of the
+/// machine's string in `exactly` or, if there is no string, an order in which most interrupts lead forwards.
 #[must_use]
 pub fn as_printed(machine: &Machine, exactly: &TheoremResult) -> [Rule; 4] {
     let mut order = forwards(machine);
@@ -79,7 +79,7 @@ impl Lowest {
         Self { other: Some(self.other.map_or(row, |other| other.min(row))), ..self }
     }
 
-    /// Returns the minimum destination row of the transitions of interrupts other than `interrupt`.
+    /// Returns the minimum destination row of all interrupts other than `interrupt`.
     fn of_another(self, interrupt: InterruptId) -> usize {
         match self.one {
             Some((lowest, of)) if of != interrupt => lowest,
@@ -114,7 +114,7 @@ impl Columns<'_> {
     }
 
     /// Checks R1: for each column except the last, exactly one interrupt moves the column to the next one and moves no
-    /// other column. Returns the reason if this fails.
+    /// other column. Returns the reason if this does not hold.
     fn atoms(&self) -> Option<String> {
         let mut moved = vec![0_usize; self.machine.interrupts().len()];
         self.moves().for_each(|(interrupt, ..)| moved[interrupt.0 as usize] += 1);
@@ -138,7 +138,7 @@ impl Columns<'_> {
     }
 
     /// Checks R2: no interrupt leads back, and an interrupt that leads from one column to another also leads there from
-    /// all columns between them. Returns the reason if this fails.
+    /// all columns between them. Returns the reason if this does not hold.
     fn forwards(&self) -> Option<String> {
         let runs = self.runs();
         self.moves().zip(&runs).find_map(|((interrupt, from, to), run)| {
@@ -185,7 +185,7 @@ impl Columns<'_> {
     }
 
     /// Checks R3 as intended: the columns that two interrupts enclose are disjoint or nested. Returns the reason if
-    /// this fails.
+    /// this does not hold.
     fn nested(&self) -> Option<String> {
         let (mut runs, _) = cut(self.machine, &self.order);
         runs.sort_by_key(|run| (run.first, std::cmp::Reverse(run.last), run.interrupt));
@@ -210,7 +210,7 @@ impl Columns<'_> {
     }
 
     /// Checks R3 literally: if `k2 <= k1` and `p2 < p1` in the paper's notation, one of two interrupts must enclose the
-    /// other. Returns the reason if this fails.
+    /// other. Returns the reason if this does not hold.
     fn nested_to_the_letter(&self) -> Option<String> {
         let (moves, runs) = (self.moves().collect::<Vec<_>>(), self.runs());
         let mut lowest = Vec::with_capacity(moves.len() + 1);
@@ -244,7 +244,7 @@ impl Columns<'_> {
     }
 
     /// Checks R4 literally: if any interrupt leads forwards to a column, this column differs from its neighbours in all
-    /// matrices. Returns the reason if this fails.
+    /// matrices. Returns the reason if this does not hold.
     fn loops_to_the_letter(&self) -> Option<String> {
         let mut equal = vec![None; self.order.len()];
         for (interrupt, from, _) in self.moves() {

@@ -1,4 +1,4 @@
-//! Reads FSM files (docs/src/reference/interfaces.md, 5): states, and interrupts with their transitions.
+//! Reads FSM files (docs/src/reference/interfaces.md, 5), which contain states, and interrupts with their transitions.
 //!
 //! In the resulting machine, every transition connects two states of the file, and each state has at most one
 //! transition per interrupt.
@@ -16,7 +16,7 @@ use mdle_compiler::syntax::{is_law, operands};
 /// Reason why a file cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileError {
-    /// Line of the error, from 1; `None` if the error is not in a single line.
+    /// Line of the error, counted from 1; `None` if the error is not in a single line.
     pub line: Option<usize>,
     /// Description of the error.
     pub message: String,
@@ -40,7 +40,8 @@ struct WrittenInterrupt {
     text: Option<String>,
 }
 
-/// Transitions of an interrupt: the destination by the name of the state from which it leads.
+/// Transitions of an interrupt. The key is the name of the state from which a transition leads; the value is the name
+/// of its destination.
 struct Moves(BTreeMap<String, String>);
 
 impl<'de> Deserialize<'de> for Moves {

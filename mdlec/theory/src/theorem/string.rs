@@ -15,8 +15,8 @@ const DEPTH: usize = 100;
 struct Enclosed {
     first: usize,
     last: Reverse<usize>,
-    /// Rank among scopes and loops with the same range. A loop is inside the scopes that lead out of it, and encloses
-    /// the scopes that lead back to its start.
+    /// Rank of the scope or loop among those with the same range. A loop is inside the scopes that lead out of it, and
+    /// encloses the scopes that lead back to its start.
     rank: Rank,
     interrupt: Option<InterruptId>,
 }
@@ -67,8 +67,8 @@ fn enclosed_by(run: &ScopeRun) -> Enclosed {
     Enclosed { first: run.first, last: Reverse(run.last), rank, interrupt: Some(run.interrupt) }
 }
 
-/// Returns the interrupt that fires when a law completes, if the plan need not contain it: it encloses only single
-/// atoms, and leads where the atoms' own interrupts lead.
+/// Returns the interrupt that fires when a law completes, if the plan need not contain it. This is the case if it
+/// encloses only single atoms, and leads to the same states as the atoms' own interrupts.
 fn completed(machine: &Machine, enclosed: &[Enclosed]) -> Option<InterruptId> {
     let completed = machine.completed()?;
     let mut own = enclosed.chunk_by(|one, other| (one.first, one.last) == (other.first, other.last));
@@ -84,7 +84,7 @@ fn condition(texts: &MachineTexts, interrupt: InterruptId) -> &str {
     &texts.conditions[interrupt.0 as usize]
 }
 
-/// An open bracket, whose content is being written.
+/// An open bracket, the content of which is being written.
 struct WrittenBracket {
     last: usize,
     end: &'static str,

@@ -6,11 +6,12 @@ use crate::Nanos;
 const APART: f64 = 0.1;
 /// Maximum number of echoes that a line takes into account.
 const KEPT: f64 = 24.0;
-/// Minimum of `Line::squares`, in square metres, at which the direction of a wall counts as known: range errors of 1.5
-/// cm then cause an error of 1 degree. Sides of boxes are shorter, and may lie at any angle.
+/// Minimum value of `RegressionLine::squares`, in square metres, for which the direction of a wall is treated as known:
+/// at this value, range errors of 1.5 cm cause a direction error of 1 degree. The sides of boxes, which may lie at any
+/// angle, are too short to reach it.
 const KNOWN: f64 = 1.0;
-/// Minimum of `Line::squares`, in square metres, at which the slope of the line is used to predict the next echo of the
-/// wall.
+/// Minimum value of `RegressionLine::squares`, in square metres, for which the slope of the line is used to predict the
+/// next echo of the wall.
 const GUESSED: f64 = 0.02;
 
 /// Regression line through echoes, from their coordinates along and across an axis, in metres.
@@ -29,7 +30,7 @@ pub(super) struct RegressionLine {
 }
 
 impl RegressionLine {
-    /// Returns a line without echoes, which takes only echoes after the time `last`.
+    /// Creates a line without echoes. It accepts only echoes after the time `last`.
     pub(super) fn since(last: Nanos) -> Self {
         Self { last, ..Self::default() }
     }

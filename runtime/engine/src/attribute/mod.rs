@@ -1,4 +1,4 @@
-//! Attributes: typed values that modules publish at turn breaks, and that other modules, plans and people read (paper,
+//! Attributes: typed values that modules publish at turn breaks. Other modules, plans and people read them (paper,
 //! section III-B).
 
 mod value;
@@ -93,7 +93,7 @@ macro_rules! places {
 
 places!(Out, In);
 
-/// Name of an attribute: the name of its module, and its own name in the module.
+/// Name of an attribute: the name of its module, and the attribute's name within the module.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct AttributeName {
     /// Name of the module.
@@ -103,7 +103,7 @@ pub struct AttributeName {
 }
 
 impl AttributeName {
-    /// Returns the name of the attribute `attribute` of the module `module`.
+    /// Creates the name of the attribute `attribute` of the module `module`.
     #[must_use]
     pub fn new(module: &str, attribute: &str) -> Self {
         Self { module: module.into(), attribute: attribute.into() }
@@ -117,7 +117,7 @@ impl fmt::Display for AttributeName {
     }
 }
 
-/// Returns `true` if a module or an attribute may have this name. A name consists of ASCII letters, digits and
+/// Returns `true` if `text` is a valid name of a module or an attribute. A name consists of ASCII letters, digits and
 /// underscores, and does not begin with a digit, as in MDLe.
 pub(crate) fn is_name(text: &str) -> bool {
     let begins = text.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_');

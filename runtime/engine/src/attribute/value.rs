@@ -67,17 +67,17 @@ pub enum Value {
     Bytes(Arc<[u8]>),
 }
 
-/// A value with the time of the turn break at which it was published, on the engine's clock.
+/// A value with the time at which it was published, on the engine's clock.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reading {
-    /// The value.
+    /// The published value.
     pub value: Value,
-    /// Time at which the last turn before the turn break began.
+    /// Start time of the turn whose turn break published the value.
     pub at: Nanos,
 }
 
 impl AttributeKind {
-    /// All kinds, in the order of their numbers in records.
+    /// All kinds, in the order of their numbers in records of runs.
     const ALL: [Self; 13] = [
         Self::Flag,
         Self::Integer,
@@ -99,7 +99,7 @@ impl AttributeKind {
         (0..).zip(Self::ALL).find(|(_, kind)| *kind == self).map_or(u8::MAX, |(number, _)| number)
     }
 
-    /// Returns the kind that has this number in records, or `None` if there is none.
+    /// Returns the kind with this number in records; `None` if no kind has the number.
     pub(crate) fn of_number(number: u8) -> Option<Self> {
         Self::ALL.get(usize::from(number)).copied()
     }
@@ -189,8 +189,8 @@ impl Value {
         }
     }
 
-    /// Converts these bits to a value of kind `kind`. For a kind that plans cannot read as a number, returns a
-    /// placeholder that they cannot read either.
+    /// Converts these bits to a value of kind `kind`. If plans cannot read values of this kind as numbers, returns a
+    /// placeholder of a kind that they cannot read either.
     pub(crate) fn of_bits(kind: AttributeKind, bits: u64) -> Self {
         let number = f64::from_bits(bits);
         match kind {

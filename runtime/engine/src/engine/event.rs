@@ -16,7 +16,7 @@ pub enum Event {
     Started(Arc<str>),
     /// The module makes no turns until it is started again.
     Stopped(Arc<str>),
-    /// The module cannot continue; contains the reason as a sentence.
+    /// The module cannot continue; contains the reason, as a sentence.
     Failed(Arc<str>, String),
     /// The module had not finished its turn at the deadline.
     Late(Arc<str>),
@@ -48,7 +48,7 @@ impl fmt::Display for Event {
 /// exactly.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arrivals {
-    /// Values from background modules in order of arrival, each with its position on the board.
+    /// Values from background modules, in order of arrival, each with the board position of its attribute.
     pub values: Vec<(usize, Value)>,
     /// Background modules that have ended, each with the reason.
     pub ended: Vec<(Arc<str>, End)>,
@@ -67,7 +67,7 @@ pub enum End {
     Failed(String),
     /// The module's code panicked; contains the panic message.
     Panicked(String),
-    /// In stepped time, the module exchanged no values in time, although its latency had passed.
+    /// In stepped time, the module did not exchange values in time after its latency had passed.
     GivenUp,
 }
 

@@ -1,4 +1,4 @@
-//! Attributes of other robots. The state link puts them on the board before a turn.
+//! Attributes of other robots, which the state link puts on the board before a turn.
 
 use mdle_runtime::ModuleRead;
 
@@ -43,7 +43,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.board.posts().iter().filter(move |post| !is_own(post))
     }
 
-    /// Checks that all modules that `reads` name are loaded.
+    /// Checks that all modules named in `reads` are loaded.
     ///
     /// # Errors
     /// Fails if a module is not loaded.

@@ -7,12 +7,12 @@ use crate::module::Refusal;
 /// Effect of a request to stop or to start a module.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HoldEffect {
-    /// The request has no effect: the module was already stopped by a request, or already makes turns.
+    /// The request has no effect, because the module was already in the requested state.
     None,
     /// The module stops: it makes no turns from the next turn on.
     Stops,
-    /// The module already makes no turns because nothing reads it; from now on, it makes none even if something reads
-    /// it.
+    /// The module already makes no turns because nothing reads it. From now on, it makes no turns even if something
+    /// reads it.
     StaysStopped,
     /// The module starts: it makes turns from the next turn on.
     Starts,

@@ -38,7 +38,7 @@ pub(crate) struct ExchangeState {
     pub(crate) gate: ThreadGate,
     /// Time at which the module's next exchange is due, in stepped time.
     pub(crate) due: Nanos,
-    /// Values of the module while a turn break processes them; `None` otherwise.
+    /// Values of the module while a turn break processes them; `None` at any other time.
     pub(crate) ports: Option<Ports>,
 }
 
@@ -49,7 +49,8 @@ pub enum ModuleState {
     Active,
     /// The module makes no turns for now: a user has stopped it, or nothing reads it.
     Stopped,
-    /// The module is late: a thread is still running its turn with this number and time.
+    /// The module is late: a thread is still running an earlier turn of the module. Contains the number and the time of
+    /// that turn.
     Late(u64, Nanos),
     /// The module was late for too long, and makes no further turn.
     GivenUp,
@@ -71,8 +72,8 @@ impl ModuleState {
 }
 
 impl<Y> LoadedModule<Y> {
-    /// Returns a module that is loaded at `now`. If `lives` is `true`, the thread of a background module starts to run;
-    /// in a replay, it never runs.
+    /// Creates a loaded module; `now` is the time of loading. If `lives` is `true`, the thread of a background module
+    /// starts to run; in a replay, it never runs.
     pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
         let Candidate { name, declared, form } = candidate;
         let (runs, state) = match form {
@@ -109,7 +110,7 @@ impl<Y> LoadedModule<Y> {
         }
     }
 
-    /// Returns the module's seat if the module has to be queued for the next turn; `None` otherwise.
+    /// Returns the module's seat if the module has to run in the next turn; `None` otherwise.
     pub(crate) fn queued(&self) -> Option<&Arc<Seat<Y>>> {
         let seat = self.seat()?;
         let is_queued = match self.state {
@@ -120,7 +121,7 @@ impl<Y> LoadedModule<Y> {
         is_queued.then_some(seat)
     }
 
-    /// Returns `true` if the module makes turns even if nothing reads it.
+    /// Returns `true` if the module makes turns even when nothing reads it.
     pub(crate) fn is_always_relevant(&self) -> bool {
         self.declared.relevance == Relevance::Always
     }

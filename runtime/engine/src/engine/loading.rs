@@ -26,7 +26,7 @@ pub(crate) struct Loading<Y> {
     begun: usize,
 }
 
-/// Number of a request, with the created module or the reason why it could not be created.
+/// Number of a request, and its result: the created module, or the reason why the module could not be created.
 type Made<Y> = (u32, Result<Candidate<Y>, Refusal>);
 
 /// A module to create.
@@ -39,7 +39,7 @@ pub(crate) enum NewModule {
 }
 
 impl<Y: 'static> Loading<Y> {
-    /// Returns a loader for modules of this library.
+    /// Creates a loader for modules of this library.
     ///
     /// # Errors
     /// Fails if the system cannot create the thread.
@@ -60,7 +60,7 @@ impl<Y: 'static> Loading<Y> {
         &self.library
     }
 
-    /// Starts to create a module; returns the number of the request.
+    /// Starts to create a module on its own thread; returns the number of the request.
     ///
     /// # Errors
     /// Fails with a sentence if no module can be created now.
@@ -74,7 +74,7 @@ impl<Y: 'static> Loading<Y> {
         Ok(self.last)
     }
 
-    /// Returns the next module that was created; `None` if none is ready. Never waits.
+    /// Returns a module that was created since the last call; `None` if there is no such module. Never waits.
     pub(crate) fn next(&mut self) -> Option<Made<Y>> {
         let made = self.done.try_recv().ok()?;
         self.begun = self.begun.saturating_sub(1);

@@ -1,4 +1,4 @@
-//! The engine: modules with their turns and turn breaks.
+//! The engine: modules, their turns, and the turn breaks between the turns.
 
 mod event;
 mod foreign;

@@ -34,26 +34,26 @@ pub struct Modules<Y> {
     pub(super) board: Board,
     /// Loaded modules in the order in which they were loaded. Every turn break uses this order.
     pub(super) loaded: Vec<LoadedModule<Y>>,
-    /// Order in which threads take the modules.
+    /// Order in which worker threads take the modules in a turn.
     pub(super) order: Vec<usize>,
     pub(super) fork: Fork<Y>,
     pub(super) service: Service,
     pub(super) janitor: Janitor,
-    /// Attributes that plans, safety rules and other robots read, including plans that may become active.
+    /// Attributes that are read by other robots, by safety rules, and by plans, including plans that may become active.
     pub(super) plan_reads: Vec<ModuleRead>,
     /// `true` if the relevant modules have to be determined again.
     pub(super) has_changed: bool,
     pub(super) events: Vec<Event>,
     pub(super) arrivals: Arrivals,
-    /// Arrivals at the remaining turn breaks of the run that is replayed; `None` if no run is replayed. In a replay, no
-    /// background module runs.
+    /// Recorded arrivals for the remaining turn breaks of the replayed run; `None` if no run is replayed. In a replay,
+    /// no background module runs.
     pub(super) replayed: Option<VecDeque<Arrivals>>,
     /// Number and start time of the current turn.
     pub(super) turn: (u64, Nanos),
 }
 
 impl<Y: Send + Sync + 'static> Modules<Y> {
-    /// Returns the modules of an engine, none of which is loaded yet.
+    /// Creates the modules of an engine; no module is loaded yet.
     ///
     /// # Errors
     /// Fails if the system cannot create the threads.
@@ -74,7 +74,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         })
     }
 
-    /// Returns the modules of a replay. `arrivals` contains the arrivals at the turn breaks of the recorded run, in
+    /// Creates the modules of a replay. `arrivals` contains the arrivals at the turn breaks of the recorded run, in
     /// order.
     ///
     /// # Errors
@@ -91,7 +91,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.board
     }
 
-    /// Returns the board for writing: a replay puts the values of the recorded run on it.
+    /// Returns the board, so that a replay can set the values of the recorded run.
     pub(super) fn board_mut(&mut self) -> &mut Board {
         &mut self.board
     }
@@ -102,8 +102,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         &self.events
     }
 
-    /// Returns the arrivals at the last turn break: values and ends of background modules, and registered modules that
-    /// were late or skipped.
+    /// Returns the arrivals at the last turn break: values from background modules, background modules that have ended,
+    /// and registered modules that were late or skipped.
     #[must_use]
     pub fn arrivals(&self) -> &Arrivals {
         &self.arrivals
@@ -120,7 +120,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.module(name).map_or(0, |module| module.late_turns)
     }
 
-    /// Returns the mean real time that the last turns of a registered module took; newer turns count more. Returns
+    /// Returns the mean real time of the last turns of a registered module, in which newer turns weigh more. Returns
     /// `None` before the first turn, and if no registered module has this name.
     #[must_use]
     pub fn cost(&self, name: &str) -> Option<Duration> {
@@ -134,7 +134,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.module(name).map_or(0, |module| module.declared.priority)
     }
 
-    /// Returns the reason why a module failed or was given up; empty if it was not, or if no module has this name.
+    /// Returns the reason why a module failed or was given up; empty for any other module, and if no module has this
+    /// name.
     #[must_use]
     pub fn fault(&self, name: &str) -> &str {
         self.module(name).map_or("", |module| &module.fault)
@@ -153,12 +154,12 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         self.loaded.iter().find(|module| &*module.name == name)
     }
 
-    /// Loads a module, which comes last in the order of turn breaks. A registered module makes its first turn after the
-    /// next [`Modules::prepare`].
+    /// Loads a module at the end of the list of modules. A registered module makes its first turn after the next
+    /// [`Modules::prepare`].
     ///
     /// # Errors
-    /// Fails without any change if the name is taken, or if an attribute has another kind than one of its readers
-    /// expects.
+    /// Fails without any change if the name is taken, or if an attribute has another kind than a reader of the
+    /// attribute expects.
     pub fn load(&mut self, candidate: Candidate<Y>) -> Result<(), Refusal> {
         let name = Arc::clone(&candidate.name);
         let is_loaded = self.names().any(|(known, _)| known == &*name);
@@ -252,7 +253,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
 }
 
 impl<Y> Drop for Modules<Y> {
-    /// Asks the threads of all background modules to end. The modules are then dropped, which waits for each thread.
+    /// Asks the threads of all background modules to end. The modules are dropped afterwards, which waits for the
+    /// threads.
     fn drop(&mut self) {
         for module in &self.loaded {
             if let ModuleCode::InBackground(visit) = &module.runs {

@@ -27,7 +27,7 @@ pub struct Engine<A: EngineAlphabet> {
     plans: Plans<A>,
     modules: Modules<A::Output>,
     loading: Loading<A::Output>,
-    /// Time from a turn's output to the deadline of its modules; `None` in stepped time.
+    /// Time from a turn's output to the deadline of the modules' turns; `None` in stepped time.
     patience: Option<Duration>,
     /// Module attributes that safety rules read; `None` without rules.
     rules_read: Option<&'static [ModuleRead]>,
@@ -41,7 +41,7 @@ pub struct Engine<A: EngineAlphabet> {
 }
 
 impl<A: EngineAlphabet> Engine<A> {
-    /// Returns an engine for a run with this plan and these modules. Modules make their turns on worker threads in real
+    /// Creates an engine for a run with this plan and these modules. Modules make their turns on worker threads in real
     /// time, and on the caller's thread in stepped time.
     ///
     /// # Errors
@@ -90,11 +90,11 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(engine)
     }
 
-    /// Prepares the engine for safety rules that read these module attributes; from now on, outputs contain the
+    /// Prepares the engine for safety rules that read the module attributes `reads`; from now on, outputs contain these
     /// attributes.
     ///
     /// # Errors
-    /// Fails if no module publishes one of the attributes, or if it has another kind (exit status 2).
+    /// Fails if no module publishes one of the attributes, or if an attribute has another kind (exit status 2).
     pub fn under_rules(self, reads: &'static [ModuleRead]) -> Result<Self, mdle_host::Refusal> {
         reads::check(reads, self.modules.board()).map_err(mdle_host::Refusal::Usage)?;
         let mut engine = Self { rules_read: Some(reads), ..self };
@@ -103,16 +103,16 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(engine)
     }
 
-    /// Lets the engine replay a recorded run, whose module values [`Engine::repeat`] supplies. `rules_read` lists the
-    /// module attributes that safety rules read, if the run had rules. The engine has no modules except the module of
-    /// the plans.
+    /// Prepares the engine to replay a recorded run. [`Engine::repeat`] supplies the recorded values of modules.
+    /// `rules_read` lists the module attributes that safety rules read, if the run had rules. The engine has no modules
+    /// except the module of the plans.
     #[must_use]
     pub fn repeating(self, rules_read: Option<&'static [ModuleRead]>) -> Self {
         Self { rules_read, repeats: Some(Repeats::default()), ..self }
     }
 
-    /// Repeats a change of the recorded run before the next turn. The caller has to repeat armed plans (with
-    /// [`Plans::replace`]), changes of safety rules, and recorded paths, which are part of outputs.
+    /// Repeats a change of the recorded run before the next turn. Some changes have to be repeated by the caller: armed
+    /// plans (with [`Plans::replace`]), changes of safety rules, and recorded paths, which are part of outputs.
     pub fn repeat(&mut self, change: &RecordedChange) {
         match change {
             RecordedChange::Cancelled => self.plans.cancel(),
@@ -158,8 +158,8 @@ impl<A: EngineAlphabet> Engine<A> {
         self.link.as_ref().map_or(&[], StateLink::recipients)
     }
 
-    /// Sends a plan, given by its name, its text and the moment at which it takes over, to the robot `to`. The robot's
-    /// answer becomes a message to the operator.
+    /// Sends a plan to the robot `to`; `plan` contains the plan's name, its text, and the moment at which it takes
+    /// over. The robot's answer becomes a message to the operator.
     ///
     /// # Errors
     /// Returns a sentence with the reason if the plan cannot be sent.
@@ -170,15 +170,16 @@ impl<A: EngineAlphabet> Engine<A> {
         }
     }
 
-    /// Updates the attributes for which modules have to make turns: attributes that plans and safety rules read, and
-    /// attributes that the robot shares with other robots.
+    /// Updates the list of attributes for which modules have to make turns: attributes that plans and safety rules
+    /// read, and attributes that the robot shares with other robots.
     fn read_modules(&mut self) {
         let Self { plans, modules, rules_read, link, .. } = self;
         let shares = link.as_ref().map_or(&[][..], StateLink::shares);
         modules.plan_reads(plans.reads().chain(rules_read.unwrap_or_default()).chain(shares));
     }
 
-    /// Attaches a path recorder, which records the path driven under certain laws for plans to replay.
+    /// Attaches a path recorder. It records the path that the robot drives under certain laws, so that plans can replay
+    /// it.
     #[must_use]
     pub fn recording(self, recorder: Box<dyn Recorder<A::Output>>) -> Self {
         Self { recorder: Some(recorder), ..self }
@@ -189,7 +190,7 @@ impl<A: EngineAlphabet> Engine<A> {
         &self.plans
     }
 
-    /// Returns the plans, for requests at a turn break.
+    /// Returns the plans, so that requests can be made at a turn break.
     pub fn plans_mut(&mut self) -> &mut Plans<A> {
         &mut self.plans
     }
@@ -199,12 +200,12 @@ impl<A: EngineAlphabet> Engine<A> {
         &self.modules
     }
 
-    /// Returns the modules, for requests at a turn break.
+    /// Returns the modules, so that requests can be made at a turn break.
     pub fn modules_mut(&mut self) -> &mut Modules<A::Output> {
         &mut self.modules
     }
 
-    /// Returns the names of the modules that can be loaded.
+    /// Returns the names of all modules that can be loaded.
     pub fn library(&self) -> impl Iterator<Item = &str> {
         self.loading.library().names()
     }
@@ -218,8 +219,8 @@ impl<A: EngineAlphabet> Engine<A> {
         self.begin_loading(NewModule::OfLibrary(name.to_owned()))
     }
 
-    /// Starts to load a child process as a module of this name, as [`Engine::load`] does; `/bin/sh` interprets the
-    /// command line.
+    /// Starts to load a child process as a module with this name, as [`Engine::load`] does for a module of the library;
+    /// `/bin/sh` interprets the command line.
     ///
     /// # Errors
     /// Fails with a sentence if the module cannot be loaded now.
@@ -237,14 +238,14 @@ impl<A: EngineAlphabet> Engine<A> {
         self.loading.begin(module)
     }
 
-    /// Reports a message to the operator with the next turn.
+    /// Adds a message to the operator, which is reported with the next turn.
     pub fn tell(&mut self, message: String) {
         self.messages.push(message);
     }
 
-    /// Continues requests at a turn break: arms a plan that was compiled, loads a module that was created, and updates
-    /// the modules' copies of attributes that have changed. Returns the number and the result of a request to load a
-    /// module, if one is finished.
+    /// Continues requests at a turn break: arms a plan that has been compiled, loads a module that has been created,
+    /// and updates modules' copies of changed attributes. Returns the number and the result of a finished request to
+    /// load a module; `None` if no such request is finished.
     pub fn progress(&mut self) -> Option<(u32, Result<(), Refusal>)> {
         self.plans.arm();
         let made = self.loading.next();
@@ -256,8 +257,8 @@ impl<A: EngineAlphabet> Engine<A> {
         loaded
     }
 
-    /// Loads a module that was created while the robot drives. Reports attributes that the module reads but no module
-    /// publishes.
+    /// Loads a module that was created while the robot was driving. Reports attributes that the module reads but no
+    /// module publishes.
     fn load_made(&mut self, candidate: Candidate<A::Output>) -> Result<(), Refusal> {
         let name = candidate.name().to_owned();
         self.modules.load(candidate)?;
@@ -266,7 +267,7 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Ends the plan on trial, with the reason `why`. The plan that it replaced continues at its atom in the next turn,
+    /// Ends the plan on trial for the reason `why`. The plan that was replaced continues at its atom in the next turn,
     /// as if no time had passed.
     ///
     /// # Errors
@@ -288,7 +289,7 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Loads the module that makes the turns of plans. First unloads the previous one, which may hang.
+    /// Loads a new module that makes the turns of plans, after unloading the old one, which may hang.
     fn load_plan_module(&mut self) {
         let module = self.plans.module();
         let candidate = Candidate::registered(PLAN, |declare: &mut Declare| {

@@ -1,5 +1,5 @@
-//! Determines the relevant modules: modules that are always relevant, modules that the plan reads, and all modules that
-//! relevant modules read.
+//! Determines the relevant modules: modules that are always relevant, modules that the plan reads, and modules that
+//! other relevant modules read.
 
 use super::loaded::LoadedModule;
 

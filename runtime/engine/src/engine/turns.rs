@@ -14,18 +14,18 @@ use crate::module::{Fault, ThreadEnd};
 
 /// Number of turns after which a late module is given up, if [`PATIENCE`] has passed as well.
 const LATE_TURNS: u64 = 10;
-/// Time after which a late module is given up. Also the maximum wait for a background module without a latency in
-/// stepped time.
+/// Time after which a late module is given up. Also the maximum time that a turn break in stepped time waits for a
+/// background module without a latency.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Maximum part of a declared latency that is added to [`PATIENCE`] when a turn break in stepped time waits for a
+/// Maximum part of a declared latency by which [`PATIENCE`] is extended when a turn break in stepped time waits for a
 /// background module. The sum has to stay below ten seconds, the maximum duration of a turn.
 const LONGEST_LATENCY: Duration = Duration::from_secs(8);
 /// Number of turns after which the modules are sorted by cost again.
 const REORDERED: u64 = 128;
 
 impl<Y: Send + Sync + 'static> Modules<Y> {
-    /// Makes turn `number` of every relevant module, with the output `y`, which was measured at `now`. In real time,
-    /// the call returns at `deadline` even if some modules have not finished.
+    /// Makes turn `number` of every relevant module, with the robot's output `y`, measured at `now`. In real time, the
+    /// call returns at `deadline` even if some modules have not finished.
     pub fn turn(&mut self, y: Y, number: u64, now: Nanos, deadline: Option<Instant>) {
         let Self { loaded, order, fork, events, replayed, turn, .. } = self;
         *turn = (number, now);
@@ -96,8 +96,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         relevant(&self.loaded, places)
     }
 
-    /// Sets the attributes that plans, safety rules and other robots read. A module that only they read makes turns
-    /// only while one of them reads it.
+    /// Sets the attributes that plans, safety rules and other robots read. A module without other readers makes turns
+    /// only while this list contains one of its attributes.
     pub(crate) fn plan_reads(&mut self, reads: impl Iterator<Item = &'static ModuleRead> + Clone) {
         if !self.plan_reads.iter().eq(reads.clone()) {
             self.plan_reads.clear();
@@ -171,7 +171,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         board.publish(module.first, &mut occupant.ports, turn.1, |_, _| ());
     }
 
-    /// Publishes the values of a background module that waits for the break, or notes that the module has ended.
+    /// Publishes the values of a background module that waits for the break, or records that the module has ended.
     fn settle_background(&mut self, number: usize) {
         let Self { board, loaded, events, arrivals, service, turn, .. } = self;
         let Some(module) = loaded.get_mut(number) else { return };
@@ -199,7 +199,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         arrivals.ended.push((Arc::clone(&module.name), end));
     }
 
-    /// Publishes the values that arrived at this turn break in the recorded run, and notes the modules that ended
+    /// Publishes the values that arrived at this turn break of the recorded run, and records the modules that ended
     /// there.
     fn settle_replayed(&mut self) {
         let Self { board, loaded, events, arrivals, turn, .. } = self;
@@ -225,8 +225,8 @@ impl Arrivals {
 }
 
 impl ModuleState {
-    /// Records that a module is late at the turn break of this turn. Returns the event if the module was not late
-    /// before, or if it is given up now.
+    /// Records that a module is late at this turn break. Returns an event if the module was not late before, or if it
+    /// is given up now.
     fn is_late(&mut self, name: &Arc<str>, (number, now): (u64, Nanos)) -> Option<Event> {
         let Self::Late(since, at) = *self else {
             *self = Self::Late(number, now);
@@ -241,7 +241,7 @@ impl ModuleState {
 }
 
 impl<Y> LoadedModule<Y> {
-    /// Starts or stops a module; returns the event, or `None` if nothing has changed.
+    /// Starts or stops a module. Returns the event; `None` if nothing has changed.
     fn becomes(&mut self, is_wanted: bool) -> Option<Event> {
         let mut occupant = self.seat().and_then(|seat| seat.occupant());
         let task = occupant.as_mut().map(|occupant| &mut occupant.task);
@@ -271,7 +271,7 @@ impl<Y> LoadedModule<Y> {
         PATIENCE.saturating_add(Duration::from_nanos(self.declared.latency.0).min(LONGEST_LATENCY))
     }
 
-    /// Notes the end of a background module.
+    /// Records the end of a background module.
     fn ends(&mut self, end: End) -> Event {
         let name = Arc::clone(&self.name);
         let (state, event) = match end {

@@ -23,8 +23,8 @@ pub(super) fn unpublished(reader: &str, declared: &Declared, board: &Board) -> O
     (!names.is_empty()).then(|| format!("module `{reader}` reads {}, which no module publishes{near}", listed(&paths)))
 }
 
-/// Returns the attribute with the most similar name, in the module that `name` names or, if that module publishes
-/// nothing, in the module with the most similar name. Returns `None` if no name is similar.
+/// Returns the attribute with the most similar name. Searches the module that `name` names or, if that module publishes
+/// nothing, the module with the most similar name. Returns `None` if no name is similar.
 fn near(name: &AttributeName, board: &Board) -> Option<AttributeName> {
     let is_loaded = board.of(&name.module).next().is_some();
     let modules = board.posts().iter().map(|post| &*post.name.module);

@@ -1,5 +1,5 @@
-//! Runs a turn on several threads: workers take modules from a list, and the control thread only waits for the workers,
-//! until a deadline (paper, section III-A).
+//! Runs the modules of a turn on several threads: workers take modules from a list, and the control thread only waits
+//! for the workers, until a deadline (paper, section III-A).
 
 mod seat;
 
@@ -15,10 +15,11 @@ use rustix::thread::futex;
 use rustix::time::Timespec;
 pub(crate) use seat::{Seat, Task, TurnProgress};
 
-/// Maximum expected duration of a round that a single worker runs. Waking a second worker would take longer.
+/// Maximum expected duration of a round that is run by a single worker. Waking a second worker would take longer than
+/// such a round.
 const SMALL: Duration = Duration::from_micros(50);
-/// Maximum time for which the control thread polls for the end of a small round before it sleeps. Waking it up would
-/// take equally long.
+/// Maximum time for which the control thread polls for the end of a small round before it sleeps. Waking the thread
+/// would take about as long.
 const LOOKS: Duration = Duration::from_micros(200);
 
 /// Threads on which modules make their turns.
@@ -26,16 +27,16 @@ const LOOKS: Duration = Duration::from_micros(200);
 pub enum Threads {
     /// The control thread runs the modules itself, one after the other and without a deadline.
     Sequential,
-    /// Worker threads: their number, at least one, and a function that each worker calls first, for example to set its
-    /// priority.
+    /// Worker threads. Contains their number, at least one, and a function that each worker calls first, for example to
+    /// set its priority.
     Workers(usize, fn()),
 }
 
 /// Threads that run the turns of modules.
 pub(crate) struct Fork<Y> {
     crew: Option<Crew<Y>>,
-    /// Rounds that are reused. More than one is needed: a worker may still use the previous round for a short time, and
-    /// a module that hangs keeps its round forever.
+    /// Rounds that are reused. More than one is needed, because a worker may use the previous round for a short time
+    /// longer, and a module that hangs keeps its round forever.
     rounds: Vec<Arc<Round<Y>>>,
 }
 
@@ -49,7 +50,7 @@ struct Round<Y> {
     cost: Duration,
     /// Position of the next module to be taken.
     next: AtomicUsize,
-    /// Number of modules that have not finished; the control thread waits until it is zero.
+    /// Number of modules that have not finished. The control thread waits until it is zero.
     left: AtomicU32,
 }
 
@@ -57,7 +58,7 @@ struct Round<Y> {
 struct Crew<Y> {
     call: Arc<RoundExchange<Y>>,
     workers: usize,
-    /// `true` if the machine has several cores, so that workers and control thread can run at the same time.
+    /// `true` if the computer has several cores, so that the control thread and the workers can run at the same time.
     is_parallel: bool,
     prepare: fn(),
 }
@@ -65,7 +66,7 @@ struct Crew<Y> {
 /// Data through which the control thread passes rounds to the workers.
 struct RoundExchange<Y> {
     round: Mutex<Option<Arc<Round<Y>>>>,
-    /// Number of rounds so far; workers wait until it changes.
+    /// Number of rounds so far. Workers wait until this number changes.
     epoch: AtomicU32,
     quit: AtomicBool,
 }
@@ -156,8 +157,8 @@ impl<Y> Default for Round<Y> {
 }
 
 impl<Y> Round<Y> {
-    /// Takes modules and runs them until none is left; returns `false` if a module was late, because another thread has
-    /// then replaced this one.
+    /// Takes modules and runs them until no module is left. Returns `false` if a module was late, because another
+    /// thread has then replaced this one.
     fn work(&self) -> bool {
         let Some(y) = &self.y else { return true };
         while let Some(seat) = self.seats.get(self.next.fetch_add(1, Ordering::AcqRel)) {
@@ -215,7 +216,7 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
     }
 
     /// Starts a replacement for each worker that is still running a late module. If the system cannot create a thread,
-    /// the other workers continue without it.
+    /// the remaining workers continue without the replacement.
     fn replace(&self, late: usize) {
         (0..late).for_each(|_| _ = self.hire());
     }
@@ -226,7 +227,7 @@ impl<Y: Send + Sync + 'static> Crew<Y> {
         self.call.epoch.fetch_add(1, Ordering::AcqRel);
     }
 
-    /// If the round is small, wakes a single worker and polls for the end of the round; returns `true` if the round has
+    /// If the round is small, wakes a single worker and polls for the end of the round. Returns `true` if the round has
     /// ended.
     fn makes_alone(&self, round: &Round<Y>, deadline: Option<Instant>) -> bool {
         let is_small = self.is_parallel && round.cost <= SMALL;
@@ -272,7 +273,7 @@ impl<Y> Drop for Crew<Y> {
     }
 }
 
-/// Waits while `word` has this value, at most until the deadline; may return early.
+/// Waits while `word` has the value `value`, but not beyond the deadline; may return early.
 fn wait(word: &AtomicU32, value: u32, deadline: Option<Instant>) {
     let left = deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
     let left = left.map(|left| Timespec {

@@ -10,7 +10,7 @@ use mdle_runtime::Nanos;
 
 use crate::module::{Fault, Module, Ports, Turn, panicked};
 
-/// A registered module as the threads of a turn share it, with its progress and its cost (mean turn time).
+/// A registered module that the threads of a turn share, with the progress of its turn and its cost (mean turn time).
 pub(crate) struct Seat<Y> {
     /// Name of the module.
     name: Arc<str>,
@@ -20,8 +20,7 @@ pub(crate) struct Seat<Y> {
     occupant: Mutex<Occupant<Y>>,
 }
 
-/// A registered module with its values. It is locked by the thread that runs the module and, between turns, by the
-/// engine.
+/// A registered module with its values. The thread that runs the module holds the lock; between turns, the engine does.
 pub(crate) struct Occupant<Y> {
     module: Box<dyn Module<Y>>,
     pub(crate) ports: Ports,
@@ -82,8 +81,8 @@ impl<Y> Seat<Y> {
         self.progress.store(TurnProgress::Queued as u8, Ordering::Release);
     }
 
-    /// Ends the round for the module at the deadline: no thread may start it any more. Returns `true` if a thread is
-    /// running the module, which is then late.
+    /// Ends the round for this module at the deadline, so that no thread may start it any more. Returns `true` if a
+    /// thread is running the module, which is then late.
     pub(crate) fn cut(&self) -> bool {
         !self.moved(TurnProgress::Queued, TurnProgress::Skipped)
             && self.moved(TurnProgress::Running, TurnProgress::Late)

@@ -1,5 +1,5 @@
 //! The link between robots in one process. A random seed determines which states are delayed, lost or duplicated.
-//! Letters are only delayed, because a real sender would retransmit lost letters.
+//! Letters (plans and answers) are only delayed, because a real sender would retransmit lost letters.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -10,7 +10,8 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use super::letter;
 use super::{Letter, Link, State};
 
-/// Maximum number of unread states for one robot. A robot that makes no more turns reads no states.
+/// Maximum number of unread states for one robot. The limit is needed because a robot that makes no more turns reads no
+/// states.
 const UNREAD: usize = 4096;
 
 /// Faults of the link between two robots: delay, loss and duplication.
@@ -26,8 +27,8 @@ pub struct Faults {
 
 /// One robot's end of a link between robots in one process.
 ///
-/// A state arrives in a later turn than the turn in which it was sent, so the order in which robots make their turns
-/// has no effect. The states from one robot to another have their own stream of random numbers.
+/// A state never arrives in the turn in which it was sent, so the order in which robots make their turns has no effect.
+/// Each pair of sender and recipient has its own stream of random numbers.
 pub struct Air {
     own: usize,
     faults: Faults,
@@ -54,7 +55,7 @@ struct Sent<T> {
 }
 
 impl Air {
-    /// Returns the endpoints of a link between robots with these names, in the order of the names.
+    /// Creates the endpoints of a link between robots with these names, in the order of the names.
     #[must_use]
     pub fn new(names: &[&str], faults: Faults, seed: u64) -> Vec<Self> {
         let empty =

@@ -1,6 +1,6 @@
 //! Reads names and numbers from the bytes of a frame, and writes names (docs/src/reference/interfaces.md, 6.5).
 
-/// Maximum length of a name, in bytes.
+/// Maximum length of a name in a frame, in bytes.
 pub(super) const NAME: usize = 64;
 
 /// Returns `true` if a name has a valid length for a frame: 1 to [`NAME`] bytes.
@@ -8,7 +8,7 @@ pub(super) fn fits(name: &str) -> bool {
     (1..=NAME).contains(&name.len())
 }
 
-/// Appends a name for which [`fits`] returns `true`, preceded by its length.
+/// Appends a name, preceded by its length. The length must be valid for a frame (see [`fits`]).
 pub(super) fn put_name(to: &mut Vec<u8>, name: &str) {
     let bytes = name.as_bytes();
     let bytes = bytes.get(..bytes.len().min(NAME)).unwrap_or_default();
@@ -24,12 +24,12 @@ impl<'b> UnreadBytes<'b> {
         Self(bytes)
     }
 
-    /// Returns the bytes that were not read yet.
+    /// Returns the bytes that have not been read yet.
     pub(super) fn rest(&self) -> &'b [u8] {
         self.0
     }
 
-    /// Returns `true` if all bytes were read.
+    /// Returns `true` if all bytes have been read.
     pub(super) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -1,12 +1,12 @@
-//! The clock of the link, with which robots measure the transmission time of frames.
+//! The clock of the link. Robots use it to measure the transmission time of frames.
 
 use mdle_runtime::Nanos;
 use rustix::time::{ClockId, Timespec, clock_gettime};
 
-/// Returns the time since the computer was started, including suspensions.
+/// Returns the time since the computer was started, including the time for which it was suspended.
 ///
-/// The rate of this clock is the rate of the computer's quartz. NTP adjusts the rate of [`std::time::Instant`] until
-/// the time of day is correct; by that clock, the frames of a good peer would seem to arrive later and later.
+/// This clock runs at the rate of the computer's quartz. [`std::time::Instant`] does not: NTP adjusts its rate until
+/// the time of day is correct, and meanwhile the frames of a good peer would seem to arrive later and later.
 pub(super) fn now() -> Nanos {
     let [raw, slewed, slewed_with_suspensions] =
         [ClockId::MonotonicRaw, ClockId::Monotonic, ClockId::Boottime].map(|clock| nanos(clock_gettime(clock)));

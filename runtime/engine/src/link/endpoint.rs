@@ -1,5 +1,5 @@
-//! The endpoint of a link to other processes, for any medium that carries frames. It prepares the frames of its robot,
-//! checks frames that arrive, and keeps their contents until the robot's turn.
+//! The endpoint of a link to other processes, for any medium that carries frames. It prepares the frames that its robot
+//! sends, checks frames that arrive, and keeps the contents of these frames until the robot's turn.
 
 #[cfg(test)]
 mod tests;
@@ -54,7 +54,7 @@ pub struct Endpoint {
 }
 
 impl Endpoint {
-    /// Returns the endpoint of a robot, with a new session.
+    /// Creates the endpoint of a robot, with a new session.
     #[must_use]
     pub fn new(settings: &LinkSettings) -> Self {
         let LinkSettings { name, peers, key, plans } = settings;
@@ -95,8 +95,8 @@ impl Endpoint {
         state_frame::written(state, times, &self.key)
     }
 
-    /// Returns a letter to a peer in the form in which it is sent. A letter with a plan is registered as waiting for an
-    /// answer until [`Endpoint::is_unsent`] is called.
+    /// Prepares a letter to a peer for sending. If the letter contains a plan, an answer is expected from now on,
+    /// unless [`Endpoint::is_unsent`] is called.
     ///
     /// # Errors
     /// Returns a sentence if the robot and the peer share no key for letters, or if no state of the peer has arrived.
@@ -108,7 +108,7 @@ impl Endpoint {
         Ok(Posted { to: to.to_owned(), number: letter.number, draft, is_plan, limit })
     }
 
-    /// Records that a letter was refused before it was sent, so no answer to it is expected.
+    /// Records that a letter was refused before it was sent, so that no answer to it is expected.
     pub fn is_unsent(&self, number: u64) {
         self.letters.forget(number);
     }
@@ -126,8 +126,8 @@ impl Endpoint {
         now.since(self.begun)
     }
 
-    /// Processes a frame, without its length, from a source. The first frame of a source must be a state, which proves
-    /// the name of the robot.
+    /// Processes a frame, without its length field, from a source. The first frame of a source must be a state, because
+    /// a state proves the name of the robot.
     ///
     /// # Errors
     /// Returns the end of a sentence if the source must be closed, because it sends anything other than states and
@@ -170,18 +170,19 @@ impl Endpoint {
         lock(&self.states).take(State { age, ..state }, now)
     }
 
-    /// Takes, for each robot, the newest state if one has arrived since the last call.
+    /// Removes and returns the newest state of each robot from which a state has arrived since the last call.
     pub fn states(&self) -> impl Iterator<Item = State> + use<> {
         lock(&self.states).take_all()
     }
 
-    /// Takes the letters that have arrived since the last call. Refuses plans that are too late by now.
+    /// Removes and returns the letters that have arrived since the last call. Refuses plans that are too late by now.
     #[must_use]
     pub fn letters(&self) -> Vec<Letter> {
         self.letters.arrived(clock::now())
     }
 
-    /// Takes the plans that were refused since the last call, and reports them. The caller has to answer each plan.
+    /// Removes and returns the plans that were refused since the last call, and reports them. The caller has to answer
+    /// each plan.
     #[must_use]
     pub fn refused_plans(&self) -> Vec<RefusedPlan> {
         let plans = self.letters.refused();
@@ -189,7 +190,7 @@ impl Endpoint {
         plans
     }
 
-    /// Reports that `what` was refused for a reason, unless this was reported a short time ago.
+    /// Reports that `what` was refused for a reason, unless the same report was made a short time ago.
     pub fn refuse(&self, what: &str, reason: &str) {
         let warning = lock(&self.refusals).warning(what, reason, Instant::now());
         warning.into_iter().for_each(|warning| self.say(warning));
@@ -203,7 +204,7 @@ impl Endpoint {
         }
     }
 
-    /// Takes the messages for the operator since the last call.
+    /// Removes and returns the messages for the operator since the last call.
     #[must_use]
     pub fn messages(&self) -> Vec<String> {
         let mut messages = std::mem::take(&mut *lock(&self.messages));

@@ -11,11 +11,11 @@ use crate::attribute::{AttributeName, Reading};
 #[derive(Debug, Default)]
 pub(super) struct ForeignNames(Vec<NamesOf>);
 
-/// Names of the attributes that one robot shares, at most [`ATTRIBUTES`] including refused names.
+/// Names of the attributes that one robot shares; accepted and refused names together are at most [`ATTRIBUTES`].
 #[derive(Debug)]
 struct NamesOf {
     robot: String,
-    /// Names on the board.
+    /// Names of attributes that are on the board.
     taken: Vec<AttributeName>,
     /// Names that were refused and reported.
     refused: Vec<AttributeName>,
@@ -24,8 +24,8 @@ struct NamesOf {
 }
 
 impl ForeignNames {
-    /// Puts the attributes of a state that arrived at time `at` on the board. For each refused name, calls `say` with a
-    /// message, but only once.
+    /// Puts the attributes of a state on the board; `at` is the time at which the state arrived. Calls `say` with a
+    /// message for each refused name, but only once per name.
     pub(super) fn put(&mut self, state: &State, at: Nanos, board: &mut dyn Foreign, say: &mut dyn FnMut(String)) {
         let robot = &state.name;
         let place = self.0.iter().position(|names| names.robot == *robot);
@@ -55,7 +55,7 @@ impl ForeignNames {
         self.0.push(own);
     }
 
-    /// Returns the robot that shares attributes of the module in `name`; `None` if no robot does.
+    /// Returns the robot that shares attributes of the module that `name` names; `None` if no robot does.
     fn owner(&self, name: &AttributeName) -> Option<&str> {
         let owns = |names: &&NamesOf| names.taken.iter().any(|taken| taken.module == name.module);
         self.0.iter().find(owns).map(|names| names.robot.as_str())

@@ -1,5 +1,4 @@
-//! Frames: magic number, version, checksum, proof of the key, and body, preceded by the length
-//! (docs/src/reference/interfaces.md, 6.5).
+//! Frames: length, magic number, version, checksum, proof of the key, and body (docs/src/reference/interfaces.md, 6.5).
 
 use std::io;
 use std::sync::Arc;
@@ -34,8 +33,7 @@ impl SharedKey {
         Self(blake3::derive_key("mdle letters 1", text.as_bytes()))
     }
 
-    /// Returns the proof that the writer of a frame has the key, and has written the frame in response to this
-    /// challenge.
+    /// Returns the proof that a frame's writer has the key, and has written the frame in response to this challenge.
     fn proof(&self, challenge: &Challenge, magic: [u8; 4], body: &[u8]) -> blake3::Hash {
         let mut hasher = blake3::Hasher::new_keyed(&self.0);
         hasher.update(&challenge.0).update(&magic).update(&[VERSION]).update(body);
@@ -43,8 +41,8 @@ impl SharedKey {
     }
 }
 
-/// Random bytes that the receiver of a connection sends first. The proof of each frame covers them, so a frame that is
-/// replayed on another connection is invalid.
+/// Random bytes that the receiver of a connection sends first. The proof of each frame covers these bytes, so a frame
+/// that is replayed on another connection is invalid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Challenge([u8; 16]);
 
@@ -64,7 +62,7 @@ impl Challenge {
         }
     }
 
-    /// Returns the greeting with which a receiver sends the challenge to a sender.
+    /// Returns the greeting, in which a receiver sends the challenge to a sender.
     pub(super) fn greeting(&self) -> [u8; GREETING_LENGTH] {
         let mut greeting = [0; GREETING_LENGTH];
         let bytes = GREETING.into_iter().chain([VERSION]).chain(self.0);
@@ -94,7 +92,7 @@ impl Challenge {
 pub(super) enum RefusedFrame {
     /// The bytes are not a frame, or were damaged during transmission.
     Garbage,
-    /// The frame has a different version; contains its version.
+    /// The frame has a different version, which is contained here.
     Version(u8),
     /// The sender has a different key, or wrote the frame for a different connection.
     Key,
@@ -130,19 +128,19 @@ impl StateTimes {
 }
 
 impl FrameDraft {
-    /// Returns the draft of a frame with this magic number. `times` are the times of a state; `None` for any other
+    /// Creates the draft of a frame with this magic number. `times` contains the times of a state; `None` for any other
     /// frame.
     pub(super) fn new(magic: [u8; 4], times: Option<StateTimes>, body: Vec<u8>, key: &SharedKey) -> Self {
         Self { magic, times, body: body.into(), key: key.clone() }
     }
 
-    /// Returns the frame, including its length, as written now with a proof for this challenge.
+    /// Returns the frame, including its length field, as written now with a proof for this challenge.
     #[must_use]
     pub fn frame(&self, challenge: &Challenge) -> Vec<u8> {
         self.frame_at(challenge, clock::now())
     }
 
-    /// Returns the frame, including its length, as written at time `now` with a proof for this challenge.
+    /// Returns the frame, including its length field, as written at time `now` with a proof for this challenge.
     pub(super) fn frame_at(&self, challenge: &Challenge, now: Nanos) -> Vec<u8> {
         let Self { magic, times, body, key } = self;
         let times = times.iter().flat_map(|times| times.at(now)).flat_map(|time| time.0.to_le_bytes());
@@ -158,7 +156,7 @@ impl FrameDraft {
         frame
     }
 
-    /// Returns the frame without its length, for a medium without connections.
+    /// Returns the frame without its length field, for a medium without connections.
     #[must_use]
     pub fn payload(&self) -> Vec<u8> {
         self.frame(&Challenge::NONE).split_off(4)

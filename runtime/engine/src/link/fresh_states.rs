@@ -8,7 +8,8 @@ use mdle_runtime::Nanos;
 use super::sessions::Sessions;
 use super::{State, clock};
 
-/// States of other robots. A single lock protects sessions and states, so an older state never replaces a newer one.
+/// States of other robots. One lock protects both sessions and states, so that an older state never replaces a newer
+/// one.
 #[derive(Debug, Default)]
 pub(super) struct FreshStates {
     sessions: Sessions,
@@ -22,7 +23,7 @@ impl FreshStates {
         self.sessions.of(robot)
     }
 
-    /// Stores a state that has arrived at time `at`, unless a newer state of its robot has already arrived.
+    /// Stores a state that has arrived at time `at`, unless a newer state of the same robot has already arrived.
     ///
     /// # Errors
     /// Returns the end of a sentence if the state belongs to an ended session, or to another robot with the same name.
@@ -33,8 +34,8 @@ impl FreshStates {
         Ok(())
     }
 
-    /// Takes, for each robot, the newest state if one has arrived since the last call. Adds the time since its arrival
-    /// to its age.
+    /// Removes and returns the newest state of each robot from which a state has arrived since the last call. The time
+    /// since its arrival is added to the age of each state.
     pub(super) fn take_all(&mut self) -> impl Iterator<Item = State> + use<> {
         let now = clock::now();
         std::mem::take(&mut self.states).into_values().map(move |(mut state, at)| {

@@ -1,9 +1,9 @@
-//! Measures the lag of frames from a source. On a slow line, frames arrive later and later, although each frame arrives
-//! soon after the previous one.
+//! Measures the lag of frames from a source. On a slow line, each frame arrives soon after the previous one, but later
+//! and later after it was sent.
 
 use mdle_runtime::Nanos;
 
-/// Reciprocal of the maximum drift between the clocks of two robots: 1/5000 of a second per second.
+/// Reciprocal of the maximum drift between the clocks of two robots; the drift is 1/5000 of a second per second.
 const DRIFT: i128 = 5000;
 
 /// Minimum transmission time of frames from a source, measured with two clocks that are not synchronized.
@@ -15,8 +15,8 @@ pub(super) struct Lag {
 }
 
 impl Lag {
-    /// Returns the transmission time of a frame minus the minimum transmission time of its source. The frame was sent
-    /// at `sent` on the sender's clock, and arrived at `arrival` on this robot's clock.
+    /// Returns the transmission time of a frame minus the minimum transmission time of its source. `sent` is the
+    /// sending time on the sender's clock, and `arrival` the arrival time on this robot's clock.
     pub(super) fn of(&mut self, sent: Nanos, arrival: Nanos) -> Nanos {
         let way = i128::from(arrival.0) - i128::from(sent.0);
         let least = self.least.map_or(way, |(least, before)| {

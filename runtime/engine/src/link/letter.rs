@@ -1,4 +1,5 @@
-//! Letters between robots: plans as text, and answers to plans. Unlike a state, a letter never replaces an earlier one.
+//! Letters between robots, which contain a plan as text or an answer to a plan. Unlike a state, a letter never replaces
+//! an earlier one.
 
 use std::time::Duration;
 
@@ -10,9 +11,9 @@ pub const LONGEST_TEXT: usize = 65_536;
 pub(super) const LONGEST_SENTENCE: usize = 4096;
 /// Maximum number of plans in the queue to one robot.
 pub(super) const UNREAD: usize = 8;
-/// Time within which a plan that takes over at once has to be sent, and has to arrive.
+/// Time limit for sending a plan that takes over at once, and also for its arrival.
 const NOW: Duration = Duration::from_secs(2);
-/// Time within which any other letter has to be sent; a plan also has to arrive within this time.
+/// Time limit for sending any other letter; for a plan, also for its arrival.
 const SOON: Duration = Duration::from_secs(10);
 
 /// A letter from one robot to another.
@@ -38,11 +39,11 @@ pub enum Content {
     },
     /// The answer to a plan.
     Answer {
-        /// Number of the letter with the plan.
+        /// Number of the letter that contains the plan.
         of: u64,
         /// `true` if the plan takes over.
         is_accepted: bool,
-        /// Sentence that says when the plan takes over, or why it does not.
+        /// Sentence about when the plan takes over, or why it does not.
         sentence: String,
     },
 }
@@ -52,7 +53,7 @@ pub enum Content {
 pub struct RefusedPlan {
     /// Name of the robot that sent the plan.
     pub from: String,
-    /// Number of the letter with the plan.
+    /// Number of the letter that contains the plan.
     pub number: u64,
     /// Reason why the plan was refused, as the end of a sentence.
     pub reason: String,
@@ -64,7 +65,7 @@ impl Content {
         matches!(self, Self::Plan { .. })
     }
 
-    /// Returns the time within which the letter has to be sent; a plan also has to arrive within this time.
+    /// Returns the time limit for sending the letter; for a plan, also for its arrival.
     pub(super) fn limit(&self) -> Duration {
         match self {
             Self::Plan { when: When::Now, .. } => NOW,
@@ -73,7 +74,7 @@ impl Content {
     }
 }
 
-/// Returns the beginning of a text: as many whole characters as fit into `longest` bytes.
+/// Returns the longest beginning of a text that fits into `longest` bytes and consists of whole characters.
 pub(super) fn cut(text: &str, longest: usize) -> &str {
     text.get(..text.floor_char_boundary(longest)).unwrap_or(text)
 }

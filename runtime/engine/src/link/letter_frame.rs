@@ -10,27 +10,29 @@ use crate::plans::When;
 
 /// Magic number of a letter's frame.
 const MAGIC: [u8; 4] = *b"MDLl";
-/// Maximum length of a letter's frame, in bytes, without the four bytes of the length. All other frames are shorter.
+/// Maximum length of a letter's frame, in bytes, without the four bytes of the length field. All other frames are
+/// shorter.
 pub const LONGEST_LETTER: usize = LONGEST_TEXT + 1024;
-/// Numbers that identify the content of a letter: a plan, or one of two answers.
+/// Numbers that identify the content of a letter: a plan, a refusal or an acceptance.
 const PLAN: u8 = 0;
 const REFUSAL: u8 = 1;
 const ACCEPTANCE: u8 = 2;
 
-/// Sender and recipient of a letter, with their sessions; the proof covers them.
+/// Sender and recipient of a letter, with their sessions. The proof of the letter covers all of these.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Envelope {
     pub(super) from: String,
     pub(super) to: String,
     /// Session of the sender.
     pub(super) sent_in: u64,
-    /// Session of the recipient.
+    /// Session of the recipient for which the letter is meant.
     pub(super) meant_for: u64,
     /// Time, since the start of the sender's session, at which the letter was posted.
     pub(super) sent: Nanos,
 }
 
-/// Returns `true` if a frame, without its length, contains a letter.
+/// Returns `true` if `frame`, given without its length field, contains a letter: a plan for another robot, or an answer
+/// to such a plan.
 pub(super) fn is_letter(frame: &[u8]) -> bool {
     frame.starts_with(&MAGIC)
 }
@@ -57,7 +59,7 @@ pub(super) fn written(envelope: &Envelope, letter: &Letter, key: &SharedKey) -> 
     FrameDraft::new(MAGIC, None, body, key)
 }
 
-/// Parses the frame of a letter, without its length.
+/// Parses the frame of a letter, given without its length field.
 ///
 /// # Errors
 /// Fails if the bytes are not a letter, or if its proof is not for this key and this challenge.

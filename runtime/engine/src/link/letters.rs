@@ -1,7 +1,7 @@
-//! Letters of a link: prepares letters to be sent, and decides which letters that arrive are accepted.
+//! The letters of a link: prepares letters to be sent, and decides which arrived letters are accepted.
 //!
-//! The proof of a letter covers its number and the sessions of both robots, which the robots' states contain. So a
-//! replayed letter is not accepted a second time, on any medium.
+//! The proof of a letter covers the letter's number and the sessions of both robots; the robots' states contain the
+//! sessions. Therefore, a replayed letter is not accepted a second time, on any medium.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -15,7 +15,7 @@ use super::letter_frame::{self, Envelope};
 use super::questions::Questions;
 use super::{Content, Letter, RefusedPlan, clock, lock};
 
-/// The letters of a robot.
+/// The letters that a robot sends and receives.
 pub(super) struct Letters {
     /// Name of this robot.
     own: String,
@@ -48,15 +48,15 @@ struct WaitingLetter {
 }
 
 impl Letters {
-    /// Returns the letters of the robot `own` in this session. `keys` contains the name of each peer, with the key that
-    /// the robot shares with the peer.
+    /// Creates the storage for letters of the robot `own` in this session. `keys` contains the name of each peer, and
+    /// the key that the robot shares with this peer.
     pub(super) fn new(own: &str, session: u64, keys: &[(String, String)]) -> Self {
         let keys = keys.iter().map(|(name, key)| (name.clone(), SharedKey::of_letters(key))).collect();
         Self { own: own.to_owned(), session, keys, unread: Mutex::default(), questions: Mutex::default() }
     }
 
-    /// Returns the draft of a letter to the peer `to`, posted at time `sent` of this robot's session. `session` is the
-    /// peer's session; `None` if it is not known.
+    /// Returns the draft of a letter to the peer `to`. The letter is posted at time `sent`, counted from the start of
+    /// this robot's session. `session` is the peer's session; `None` if it is not known.
     ///
     /// # Errors
     /// Returns a sentence if the robot and the peer share no key for letters, or if no state of the peer has arrived.
@@ -83,7 +83,7 @@ impl Letters {
         }
     }
 
-    /// Removes the record of the letter with this number, which was not sent.
+    /// Removes the record of the letter with this number, because the letter was not sent.
     pub(super) fn forget(&self, number: u64) {
         lock(&self.questions).forget(number);
     }
@@ -96,7 +96,8 @@ impl Letters {
 
     /// Processes a frame that has arrived from a robot with the current session `session`. A plan is refused if it is
     /// too late, if it was sent to an earlier run of this robot, or if a newer plan from its sender arrives before the
-    /// next turn. `late` returns the delay of a letter, given the time of the sender's session at which it was posted.
+    /// next turn. `late` returns the delay of a letter, given the time at which it was posted, counted from the start
+    /// of the sender's session.
     ///
     /// # Errors
     /// Returns the end of a sentence if the frame is not a letter to this robot from the current session of the sender,
@@ -141,7 +142,7 @@ impl Letters {
         Ok(())
     }
 
-    /// Takes the letters that have arrived. Refuses plans that are too late at time `now`.
+    /// Removes and returns the letters that have arrived. Refuses plans that are too late at time `now`.
     pub(super) fn arrived(&self, now: Nanos) -> Vec<Letter> {
         let mut unread = lock(&self.unread);
         let waiting = std::mem::take(&mut unread.letters).into_iter();
@@ -155,7 +156,7 @@ impl Letters {
         in_time.collect()
     }
 
-    /// Takes the plans that were refused since the last call.
+    /// Removes and returns the plans that were refused since the last call.
     pub(super) fn refused(&self) -> Vec<RefusedPlan> {
         std::mem::take(&mut lock(&self.unread).refused)
     }
@@ -166,7 +167,7 @@ impl Letters {
 }
 
 impl ArrivedLetters {
-    /// Adds a plan, which replaces an older plan from its sender; refuses the plan if it is too late.
+    /// Adds a plan; it replaces an older plan from the same sender. Refuses the plan if it is too late.
     fn put(&mut self, plan: WaitingLetter) {
         if let Some(reason) = plan.lateness(plan.at) {
             return self.refuse(&plan.letter, reason);
@@ -190,8 +191,8 @@ impl ArrivedLetters {
 }
 
 impl WaitingLetter {
-    /// Returns the reason to refuse a plan that is too late at time `now`: an attacker on the line may have delayed it.
-    /// Returns `None` for an answer, and for a plan in time.
+    /// Returns the reason to refuse a plan that is too late at time `now`, because an attacker on the line may have
+    /// delayed it. Returns `None` for an answer, and for a plan that is in time.
     fn lateness(&self, now: Nanos) -> Option<String> {
         let limit = self.letter.content.limit();
         let late = self.late.0.saturating_add(now.since(self.at).0);

@@ -3,8 +3,8 @@
 //!
 //! A [`Link`] carries states and letters: [`Air`] between robots in one process, [`Tcp`] between processes and
 //! machines. An [`Endpoint`] prepares and checks the frames of a link to other processes, for any medium. [`StateLink`]
-//! belongs to one robot: before a turn, it writes the states that have arrived to the output; after the turn, it sends
-//! the robot's own state. It never waits.
+//! belongs to one robot. Before a turn, it writes the states that have arrived to the robot's output; after the turn,
+//! it sends the robot's own state. It never waits.
 
 mod air;
 mod bytes;
@@ -54,7 +54,7 @@ pub trait Link: Send {
     fn send(&mut self, state: &State, now: Nanos);
     /// Calls `take` with each state that has arrived by `now`, in any order.
     fn receive(&mut self, now: Nanos, take: &mut dyn FnMut(State));
-    /// Returns the session of the robot, which its states contain.
+    /// Returns the session of the robot, which all its states contain.
     fn session(&self) -> u64 {
         0
     }
@@ -73,7 +73,7 @@ pub trait Link: Send {
 
 /// A board for attributes of other robots.
 pub(crate) trait Foreign {
-    /// Puts a value that another robot has published on the board.
+    /// Puts a value on the board that another robot has published.
     ///
     /// # Errors
     /// Fails if a module of this robot has the same name, if a module reads the attribute with another kind, if the

@@ -1,5 +1,5 @@
-//! Plans that other robots have sent, until they take over or are refused, and answers to plans that this robot has
-//! sent.
+//! Keeps plans that other robots have sent, until they take over or are refused. Also keeps answers to plans that this
+//! robot has sent.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -26,7 +26,7 @@ pub(super) struct PlanExchange {
     pub(super) sends_to: Vec<String>,
     /// Number of the last letter that was sent.
     sent: u64,
-    /// Numbers and names of recently sent plans, for messages about their answers.
+    /// Numbers and names of plans that were sent recently, for messages about answers to them.
     names: VecDeque<(u64, String)>,
     /// Plans of other robots that have neither taken over nor been refused yet.
     waiting: Vec<ReceivedPlan>,
@@ -44,7 +44,7 @@ struct ReceivedPlan {
     number: u64,
     /// Moment at which the plan takes over.
     when: When,
-    /// Warnings about the plan that were not included in an answer yet; empty if there are none.
+    /// Warnings about the plan that no answer has contained yet; empty if there are none.
     warnings: String,
 }
 
@@ -54,7 +54,7 @@ impl PlanExchange {
         Self { own: own.to_owned(), ..Self::default() }
     }
 
-    /// Sends the text of the plan `name` to the robot `to`, where it takes over at the moment `when`.
+    /// Sends the text of the plan `name` to the robot `to`. The plan takes over there at the moment `when`.
     ///
     /// # Errors
     /// Returns a sentence with the reason if the plan cannot be sent.
@@ -74,8 +74,8 @@ impl PlanExchange {
         Ok(())
     }
 
-    /// Returns, for messages, the name of the plan that this robot sent in letter `number`; "a plan" if the name is no
-    /// longer known.
+    /// Returns the name of the plan that this robot sent in letter `number`, for use in messages; "a plan" if the name
+    /// is no longer known.
     fn plan(&self, number: u64) -> String {
         let name = self.names.iter().find(|(sent, _)| *sent == number);
         name.map_or_else(|| "a plan".to_owned(), |(_, name)| format!("the plan {name}"))
@@ -159,7 +159,7 @@ impl PlanExchange {
         messages
     }
 
-    /// Answers a plan. If the robot cannot be reached, it gets no answer.
+    /// Answers a plan of the robot `to`; without a connection to that robot, the answer is lost.
     fn answer(&mut self, link: &mut dyn Link, to: &str, of: u64, result: Result<&str, &str>, now: Nanos) {
         let (Ok(sentence) | Err(sentence)) = result;
         let content = Content::Answer { of, is_accepted: result.is_ok(), sentence: sentence.to_owned() };
@@ -202,8 +202,8 @@ impl ReceivedPlan {
     }
 }
 
-/// Returns text from another robot with escaped control characters. Lines after the first are indented, so none of them
-/// looks like a line of this robot's own report.
+/// Returns text from another robot with escaped control characters. Lines after the first are indented, so that no line
+/// looks like this robot's own report.
 fn printable(text: &str) -> String {
     text.lines().map(|line| Printable(line).to_string()).collect::<Vec<_>>().join("\n    ")
 }

@@ -1,4 +1,4 @@
-//! The newest state and the letters of a robot, which the robot's turns pass to the thread that sends them.
+//! The newest state and the letters that a robot's turns pass to the sending thread.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -8,7 +8,8 @@ use super::frame::FrameDraft;
 use super::letter::UNREAD;
 use super::lock;
 
-/// Maximum number of answers kept for one robot: each plan has one answer when it is waiting, and one when it begins.
+/// Maximum number of answers that are kept for one robot. Each plan has at most two answers: one when it waits to take
+/// over, and one when it begins.
 const ANSWERS: usize = 2 * UNREAD;
 /// Interval at which the last state is sent again if there is no new state.
 const HEARTBEAT: Duration = Duration::from_millis(500);
@@ -22,7 +23,7 @@ pub struct Posted {
     pub number: u64,
     /// Draft of the letter, without its proof.
     pub draft: FrameDraft,
-    /// `true` if the letter contains a plan, for which an answer is expected.
+    /// `true` if the letter contains a plan; an answer is then expected.
     pub is_plan: bool,
     /// Time after which the letter is no longer sent.
     pub limit: Duration,
@@ -44,7 +45,7 @@ struct WaitingFrames {
     letters: VecDeque<Waits>,
 }
 
-/// A letter that has to be sent, or that was sent and is kept because the connection may break before it arrives.
+/// A letter that has to be sent, or that is kept after it was sent because the connection may break before it arrives.
 struct Waits {
     letter: Posted,
     /// Time at which the letter was posted.
@@ -116,7 +117,7 @@ impl Outbox {
         waiting.state.take()
     }
 
-    /// Returns the first letter that was not sent on the current connection and has not reached its time limit at
+    /// Returns the first letter that has not been sent on the current connection and whose time limit has not passed at
     /// `now`.
     #[must_use]
     pub fn letter(&self, now: Instant) -> Option<Posted> {
@@ -125,8 +126,8 @@ impl Outbox {
         Some(letter.letter.clone())
     }
 
-    /// Records that the letter with this number was sent. If a new connection is opened, the letter is sent again,
-    /// unless its time limit has passed or, for a plan, the answer has arrived.
+    /// Records that the letter with this number was sent. On a new connection, the letter is sent again, unless its
+    /// time limit has passed or, for a plan, the answer has arrived.
     pub fn is_sent(&self, number: u64) {
         for waits in lock(&self.waiting).letters.iter_mut().filter(|waits| waits.letter.number == number) {
             (waits.is_sent, waits.was_sent) = (true, true);
@@ -138,7 +139,7 @@ impl Outbox {
         lock(&self.waiting).letters.retain(|waits| waits.letter.number != number);
     }
 
-    /// Removes letters that have reached their time limit at `now`; returns those that were never sent.
+    /// Removes letters whose time limit has passed at `now`. Returns the removed letters that were never sent.
     #[must_use]
     pub fn late(&self, now: Instant) -> Vec<Posted> {
         let mut late = Vec::new();

@@ -1,4 +1,4 @@
-//! Plans that this robot has sent to other robots and that wait for answers.
+//! Plans that this robot has sent to other robots and that have not been answered yet.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 const ANSWERS: Duration = Duration::from_secs(10);
 /// Maximum number of sent plans that are kept.
 const KNOWN: usize = 64;
-/// Maximum number of answers to a plan: one when it is waiting, one when it begins, and one more.
+/// Maximum number of answers to one plan: one when the plan waits to take over, one when it begins, and one more.
 const MOST: u8 = 3;
 
-/// The sent plans that are kept, oldest first.
+/// The plans that were sent last, oldest first; at most `KNOWN` plans.
 #[derive(Debug, Default)]
 pub(super) struct Questions(VecDeque<UnansweredPlan>);
 
@@ -36,7 +36,7 @@ impl Questions {
         self.0.push_back(UnansweredPlan { to: to.to_owned(), number, at: now, answers: 0, is_open: true });
     }
 
-    /// Removes the plan in the letter with this number, which was not sent.
+    /// Removes the plan in the letter with this number, because the letter was not sent.
     pub(super) fn forget(&mut self, number: u64) {
         self.0.retain(|question| question.number != number);
     }

@@ -1,14 +1,14 @@
-//! Warnings about refused connections, states and letters. A recurring warning is repeated only at intervals.
+//! Warnings about refused connections, states and letters. The same warning is repeated only at intervals.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-/// Time after a warning during which it is not repeated.
+/// Time after a warning during which the same warning is not repeated.
 const QUIET: Duration = Duration::from_secs(10);
 /// Maximum number of warnings that are kept.
 const KNOWN: usize = 64;
 
-/// Recent warnings by text.
+/// Recent warnings, by their text.
 #[derive(Debug, Default)]
 pub(super) struct Refusals(BTreeMap<String, RefusalCount>);
 

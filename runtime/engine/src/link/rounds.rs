@@ -1,5 +1,5 @@
-//! Counts the rounds of `rendezvous`: for each other robot, the number of scopes entered by the plan that have a
-//! `rendezvous` with that robot (docs/src/reference/semantics.md, 2.6).
+//! Counts the rounds of `rendezvous`. The number of rounds with another robot is the number of times that the plan has
+//! entered a scope with a `rendezvous` with that robot (docs/src/reference/semantics.md, 2.6).
 
 use mdle_host::{Passes, Texts, Transitions, outwards};
 use mdle_runtime::Plan;
@@ -9,7 +9,7 @@ use mdle_runtime::Plan;
 pub(super) struct Rounds {
     counts: Vec<(&'static str, u64)>,
     passes: Passes,
-    /// Number of the plan whose scopes were last counted, from 1; 0 before the first plan.
+    /// Number, counted from 1, of the plan whose scopes were counted last; 0 before the first plan.
     plan: u64,
 }
 
@@ -24,7 +24,7 @@ impl Rounds {
         self.counts.iter().find(|(name, _)| *name == robot).map_or(0, |(_, count)| *count)
     }
 
-    /// Counts the rounds of the scopes that the plan with this number has entered in a turn.
+    /// Counts the rounds that result from the scopes that the plan with this number has entered in a turn.
     pub(super) fn turn<P: Plan>(&mut self, number: u64, plan: &P, transitions: &Transitions) {
         if plan.meetings().is_empty() {
             return;
@@ -46,7 +46,7 @@ impl Rounds {
     }
 }
 
-/// Counts a round with each robot with which the entered scope `scope` has a `rendezvous`.
+/// Counts a round with each robot that a `rendezvous` of the entered scope `scope` names.
 fn count<P: Plan>(counts: &mut Vec<(&'static str, u64)>, plan: &P, scope: u32) {
     for meeting in plan.meetings().iter().filter(|meeting| meeting.scope == scope) {
         match counts.iter_mut().find(|(robot, _)| *robot == meeting.robot) {

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
-/// Time since the last state of a session during which no other session of the robot is accepted. A robot repeats its
+/// Time after a session's last state during which no other session of the same robot is accepted. A robot repeats its
 /// state every half second, regardless of the duration of its turns.
 const LIVES: Duration = Duration::from_secs(2);
 /// Maximum number of ended sessions of a robot that are kept.
@@ -22,7 +22,7 @@ struct RobotSession {
     number: u64,
     /// Arrival time of the last state, new or repeated.
     at: Instant,
-    /// Ended sessions of the robot.
+    /// Ended sessions of the robot, from which no state is accepted.
     over: VecDeque<u64>,
 }
 
@@ -32,7 +32,7 @@ impl Sessions {
         self.0.get(robot).map(|known| known.session)
     }
 
-    /// Processes the session and the number of a state of a robot that has arrived at time `now`; returns `true` if the
+    /// Processes the session and the number of a robot's state, which has arrived at time `now`. Returns `true` if the
     /// state is newer than all earlier states of the robot.
     ///
     /// # Errors

@@ -5,17 +5,18 @@ use std::time::{Duration, Instant};
 use super::frame::Challenge;
 use super::lag::Lag;
 
-/// Maximum number of states per second from a source: twice as many as a sender sends.
+/// Maximum number of states per second from a source. A sender sends half as many at most.
 const STATES: u32 = 2000;
 /// Maximum number of letters per second from a source. A sender keeps fewer letters than this, and may send all of them
 /// at once on a new connection.
 const LETTERS: u32 = 40;
 
-/// A source of frames: its robot, and the number of states and letters that it has sent in the current second.
+/// A source of frames, with the name of its robot, and the numbers of states and letters that it has sent in the
+/// current second.
 #[derive(Debug)]
 pub struct FrameSource {
     pub(super) challenge: Challenge,
-    /// Name of the robot; `None` until a frame has proved it.
+    /// Name of the robot; `None` before a frame has proved the name.
     pub(super) robot: Option<String>,
     pub(super) lag: Lag,
     second: Instant,
@@ -24,14 +25,14 @@ pub struct FrameSource {
 }
 
 impl FrameSource {
-    /// Returns the source for a new connection, on which each frame needs a proof for this challenge.
+    /// Creates the source for a new connection, on which each frame needs a proof for this challenge.
     pub(super) fn of_connection(challenge: Challenge) -> Self {
         Self { challenge, robot: None, lag: Lag::default(), second: Instant::now(), states: 0, letters: 0 }
     }
 
-    /// Returns the source for the frames of a robot on a medium without connections. It cannot detect replayed frames
-    /// of a session from before this run, unless a newer session of the robot is known; replaying the frames of a
-    /// session keeps the session alive.
+    /// Creates the source for the frames of a robot on a medium without connections. Such a source cannot detect
+    /// replayed frames of a session from before this run, unless a newer session of the robot is known; replayed frames
+    /// then keep that old session alive.
     #[must_use]
     pub fn without_connection(robot: &str) -> Self {
         Self { robot: Some(robot.to_owned()), ..Self::of_connection(Challenge::NONE) }

@@ -11,17 +11,17 @@ use crate::attribute::{AttributeName, Value};
 pub struct State {
     /// Name of the robot.
     pub name: String,
-    /// Session of the robot: a random number for its run, 0 if all robots run in one process.
+    /// Session of the robot, which is a random number for its run; 0 if all robots run in one process.
     pub session: u64,
-    /// Number of the state, from 1: within a session, a state with a higher number was sent later.
+    /// Number of the state, counted from 1. Within a session, states with higher numbers were sent later.
     pub number: u64,
-    /// Age of the state on arrival, without the minimum transmission time of its source, which is unknown.
+    /// Age of the state on arrival. The minimum transmission time of the source is not included, because it is unknown.
     pub age: Nanos,
     /// Pose by odometry, in the coordinates that all robots share.
     pub pose: Pose,
     /// Measured velocities.
     pub velocity: Twist,
-    /// For each other robot, the number of scopes entered by the plan that have a `rendezvous` with that robot.
+    /// For each other robot, the number of times that the plan has entered a scope with a `rendezvous` with that robot.
     pub rounds: Vec<(String, u64)>,
     /// Number of the atom that the robot's plan runs, as in [`PeerState::atom`](mdle_runtime::PeerState::atom).
     pub atom: u64,
@@ -32,17 +32,17 @@ pub struct State {
 /// Value of an attribute that a robot shares with other robots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharedValue {
-    /// Name of the attribute on the robot that publishes it.
+    /// Name of the attribute on the robot that shares it.
     pub name: AttributeName,
-    /// The value, of a kind that plans can read as a number.
+    /// Value of the attribute; its kind is one that plans can read as a number.
     pub value: Value,
     /// Age of the value at the time when the state was measured.
     pub age: Nanos,
 }
 
 impl SharedValue {
-    /// Returns the name of the attribute on other robots: its module's name, preceded by the name of the robot that
-    /// shares it, and its own name.
+    /// Returns the name that the attribute has on other robots. The name of its module is preceded there by `robot`,
+    /// the name of the robot that shares it.
     #[must_use]
     pub fn name_from(&self, robot: &str) -> AttributeName {
         let AttributeName { module, attribute } = &self.name;
@@ -73,7 +73,7 @@ impl State {
         self.session != known.session || self.number > known.number
     }
 
-    /// Returns the number of scopes entered by the plan that have a `rendezvous` with the robot `robot`.
+    /// Returns the number of times that the plan has entered a scope with a `rendezvous` with the robot `robot`.
     #[must_use]
     pub fn rounds_with(&self, robot: &str) -> u64 {
         self.rounds.iter().find(|(name, _)| name == robot).map_or(0, |(_, count)| *count)

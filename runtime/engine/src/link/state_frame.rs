@@ -9,11 +9,11 @@ use crate::attribute::{AttributeKind, AttributeName, Value};
 
 /// Magic number of a state's frame.
 const MAGIC: [u8; 4] = *b"MDLe";
-/// Maximum length of a state's frame, in bytes, without the four bytes of the length.
+/// Maximum length of a state's frame, in bytes, without the four bytes of the length field.
 pub(super) const LONGEST: usize = 8192;
 /// Maximum number of attributes in a state.
 pub(super) const ATTRIBUTES: usize = 40;
-/// Maximum coordinate of a robot, in metres, and its maximum velocity, in metres and radians a second.
+/// Maximum absolute value of a robot's coordinates, in metres, and of its velocities, in metres and radians per second.
 const FARTHEST: f64 = 1e6;
 const FASTEST: f64 = 1e3;
 
@@ -50,8 +50,8 @@ pub(super) fn has_fitting_name(SharedValue { name, .. }: &SharedValue) -> bool {
     fits(&name.module) && fits(&name.attribute)
 }
 
-/// Parses the frame of a state, without its length. Returns the state with its age when the frame was written, and the
-/// time of the sender's session at which the frame was written.
+/// Parses the frame of a state, given without its length field. Returns the state, with its age when the frame was
+/// written, and the time when the frame was written, counted from the start of the sender's session.
 ///
 /// # Errors
 /// Fails if the bytes are not the frame of a state, or if its proof is not for this key and this challenge.
@@ -83,7 +83,7 @@ fn state(from: &mut UnreadBytes<'_>) -> Option<(State, Nanos)> {
     from.is_empty().then_some((state, written))
 }
 
-/// Reads an attribute with its value; `None` if the value is not a number or is NaN.
+/// Reads an attribute with its value; `None` if the value is not a valid number.
 fn attribute(from: &mut UnreadBytes<'_>) -> Option<SharedValue> {
     let name = AttributeName::new(&from.name()?, &from.name()?);
     let [kind] = from.take()?;

@@ -16,14 +16,14 @@ use crate::plans::{EngineAlphabet, Plans, When};
 pub struct StateLink {
     link: Box<dyn Link>,
     name: String,
-    /// Pose of the robot at which its odometry is zero, in the coordinates that all robots share.
+    /// Pose, in the coordinates that all robots share, at which the robot's odometry is zero.
     start: Pose,
     /// Number of the last state that was sent.
     sent: u64,
     /// The newest state of each other robot.
     known: Vec<NewestState>,
     rounds: Rounds,
-    /// Modules whose attributes the robot shares, each given as a read of its `age`.
+    /// Modules whose attributes the robot shares; each entry reads the attribute `age` of such a module.
     shares: &'static [ModuleRead],
     /// Names of the attributes that other robots share.
     foreign: ForeignNames,
@@ -40,7 +40,7 @@ struct NewestState {
 }
 
 impl StateLink {
-    /// Returns the link of the robot `name`, which has zero odometry at the pose `start` in the coordinates that all
+    /// Creates the link of the robot `name`. Its odometry is zero at the pose `start`, in the coordinates that all
     /// robots share.
     #[must_use]
     pub fn new(link: Box<dyn Link>, name: &str, start: Pose) -> Self {
@@ -57,7 +57,7 @@ impl StateLink {
         }
     }
 
-    /// Shares the attributes of these modules with the other robots, if plans can read them as numbers.
+    /// Shares attributes of these modules with the other robots: all attributes that plans can read as numbers.
     #[must_use]
     pub fn sharing(self, modules: &[String]) -> Self {
         // Like the names of plans, the names exist as long as the program.
@@ -78,7 +78,8 @@ impl StateLink {
         &self.orders.sends_to
     }
 
-    /// Sends a plan, given by its name, its text and the moment at which it takes over, to the robot `to`.
+    /// Sends a plan to the robot `to`; `plan` contains the plan's name, its text, and the moment at which it takes
+    /// over.
     ///
     /// # Errors
     /// Returns a sentence with the reason if the plan cannot be sent.
@@ -97,13 +98,13 @@ impl StateLink {
         self.orders.decide(&mut *self.link, plans, now)
     }
 
-    /// Returns the modules whose attributes the robot shares, each given as a read of its `age`.
+    /// Returns the modules whose attributes the robot shares; each entry reads the attribute `age` of such a module.
     pub(crate) fn shares(&self) -> &'static [ModuleRead] {
         self.shares
     }
 
-    /// Takes the states that have arrived by time `now`, and puts their attributes on the board. Returns a message for
-    /// each attribute that is refused, but only once.
+    /// Processes the states that have arrived by time `now`, and puts their attributes on the board. Returns a message
+    /// for each refused attribute, but only once per attribute.
     pub(crate) fn receive(&mut self, now: Nanos, board: &mut dyn Foreign) -> Vec<String> {
         let Self { link, known, name, foreign, .. } = self;
         link.receive(now, &mut |state| match known.iter_mut().find(|known| known.state.name == state.name) {
@@ -121,7 +122,7 @@ impl StateLink {
         messages
     }
 
-    /// Returns the known states of the robots with these names in the turn at time `now`.
+    /// Returns the states of the robots with these names, as known in the turn at time `now`.
     pub(crate) fn sense(&self, robots: impl Iterator<Item = &'static str>, now: Nanos) -> Links {
         let mut links = Links::NONE;
         for name in robots {

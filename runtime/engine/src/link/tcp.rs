@@ -1,9 +1,9 @@
-//! The link over TCP between processes and machines. A robot's turn only passes on a state and takes the states that
-//! have arrived; separate threads do everything that may block.
+//! The link over TCP between processes and machines. A robot's turn only hands over its state and collects the states
+//! that have arrived; separate threads do everything that may block.
 //!
-//! A robot connects to each of its peers to send, and accepts connections to receive. Each peer has its own sender,
-//! which sends only the newest state, but every letter. So a peer that reads slowly or never does not delay the others.
-//! The receiver of a connection first sends a challenge, for which each frame needs a proof.
+//! A robot opens a connection to each peer for sending, and accepts connections for receiving. Each peer has its own
+//! sender, which sends all letters, but only the newest state, so a peer that reads slowly or never does not delay the
+//! others. The receiver of a connection first sends a challenge, for which each frame needs a proof.
 
 #[cfg(test)]
 mod answer_tests;
@@ -44,7 +44,7 @@ pub struct TcpSettings {
 /// One robot's end of a state link over TCP.
 pub struct Tcp {
     endpoint: Arc<Endpoint>,
-    /// Newest state and letters for each peer, by the peer's name.
+    /// The outbox of each peer, with the peer's name.
     outboxes: Vec<(String, Arc<Outbox>)>,
 }
 

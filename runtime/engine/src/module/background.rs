@@ -9,7 +9,7 @@ use mdle_runtime::Nanos;
 use super::{Fault, Ports};
 use crate::attribute::{Attribute, In, Out, Reading, Value};
 
-/// Number of checks into which a turn break divides its maximum wait for a module's values.
+/// Number of equal parts into which a turn break divides its maximum wait for a module's values.
 const LOOKS: u32 = 50;
 
 /// A module that runs in the background.
@@ -37,8 +37,8 @@ impl Exchange {
         Self { gate, ports }
     }
 
-    /// Calls `fill`, which offers values, and waits for the turn break that publishes them. Afterwards, the values that
-    /// the module reads are those of that turn break.
+    /// Calls `fill`, which offers values, and waits for the turn break that publishes these values. Afterwards, the
+    /// values that the module reads are those of that turn break.
     ///
     /// # Errors
     /// Fails if the module has to end.
@@ -49,25 +49,25 @@ impl Exchange {
         Ok(result)
     }
 
-    /// Returns the time of the last turn break, and the values that the module reads as of that turn break, in the
-    /// order of its declaration.
+    /// Returns the time of the last turn break, and the values that the module reads, as of this turn break and in the
+    /// order of the module's declaration.
     pub(crate) fn readings(&self) -> (Nanos, &[Option<Reading>]) {
         (self.ports.now, &self.ports.ins)
     }
 
-    /// Returns `true` once the module has to end. For code that waits for something other than a turn break.
+    /// Returns `true` once the module has to end. Needed by code that waits for something other than a turn break.
     #[must_use]
     pub fn is_stopped(&self) -> bool {
         self.gate.lock().is_stopped
     }
 }
 
-/// Values that a background module hands over at its next exchange.
+/// Values that a background module offers at its next exchange.
 #[derive(Debug)]
 pub struct Offer<'o>(&'o mut Ports);
 
 impl Offer<'_> {
-    /// Returns the time, on the engine's clock, of the turn that ended with the last turn break; zero before the first
+    /// Returns the start time, on the engine's clock, of the turn before the last turn break; zero before the first
     /// turn break.
     #[must_use]
     pub fn now(&self) -> Nanos {
@@ -93,7 +93,8 @@ impl Offer<'_> {
         self.0.publish(attribute, value);
     }
 
-    /// Publishes a value of the attribute at this index in the declaration; the value must have the attribute's kind.
+    /// Publishes a value of the attribute with the index `place` in the declaration; the value must have the
+    /// attribute's kind.
     pub(crate) fn put(&mut self, place: usize, value: Value) {
         if let Some(out) = self.0.outs.get_mut(place) {
             *out = Some(value);
@@ -126,7 +127,7 @@ struct BreakMeeting {
 /// Reason why the thread of a background module has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum ThreadEnd {
-    /// The module's code returned: the module was asked to end, or has nothing left to do.
+    /// The module's code returned, because the module was asked to end or has nothing left to do.
     Returned,
     /// The module cannot continue; contains the reason as a sentence.
     Failed(String),
@@ -135,7 +136,7 @@ pub(crate) enum ThreadEnd {
 }
 
 impl BreakMeeting {
-    /// Returns `true` while the module neither waits for a turn break nor has ended.
+    /// Returns `true` unless the module waits for a turn break or has ended.
     const fn is_awaited(&self) -> bool {
         self.offered.is_none() && !self.has_ended
     }
@@ -189,8 +190,8 @@ impl Gate {
         self.changed.notify_all();
     }
 
-    /// Takes the values of a module that waits for a turn break; `None` if the module does not wait. Never blocks: if
-    /// the module holds the lock, it is served at the next turn break.
+    /// Removes and returns the values of a module that waits for a turn break; `None` if the module does not wait.
+    /// Never blocks: if the module holds the lock, it is served at the next turn break.
     pub(crate) fn take_offer(&self) -> Option<Ports> {
         self.meeting.try_lock().ok()?.offered.take()
     }
@@ -202,8 +203,9 @@ impl Gate {
     }
 
     /// Waits until the module waits for a turn break or has ended; returns `false` if neither happens within
-    /// `patience`. Each of the [`LOOKS`] checks counts as an equal part of this time, even if this thread is delayed.
-    /// So no module is given up because the process was suspended or the machine was busy.
+    /// `patience`. The time is measured by [`LOOKS`] checks, each of which counts as an equal part of `patience` even
+    /// if this thread is delayed. Therefore, no module is given up because the process was suspended or the computer
+    /// was busy.
     pub(crate) fn wait_for_offer(&self, patience: Duration) -> bool {
         let mut meeting = self.lock();
         for _ in 0..LOOKS {
@@ -216,8 +218,8 @@ impl Gate {
         false
     }
 
-    /// Returns the reason why the module's thread has ended, only once. Returns `None` before the end, in later calls,
-    /// and while the module holds the lock.
+    /// Returns the reason why the module's thread has ended. Returns `None` before the end, after the reason was
+    /// returned once, and while the module holds the lock.
     pub(crate) fn take_end(&self) -> Option<ThreadEnd> {
         self.meeting.try_lock().ok()?.ended.take()
     }

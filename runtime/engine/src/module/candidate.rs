@@ -13,10 +13,10 @@ use crate::attribute::{AttributeKind, AttributeName, is_name};
 
 /// Name of the module that makes the turns of plans; reserved.
 pub const PLAN: &str = "mdle";
-/// Name of the robot in the tree of attributes, where it is listed beside the modules; reserved.
+/// Name under which the tree of attributes lists the robot beside the modules; reserved.
 pub(crate) const ROBOT: &str = "robot";
 
-/// A module that was created but is not loaded yet. The robot's turns do not wait while a module is created.
+/// A module that was created but is not loaded yet. The robot's turns do not wait for the creation of a module.
 pub struct Candidate<Y> {
     pub(crate) name: Arc<str>,
     pub(crate) declared: Declared,
@@ -31,8 +31,8 @@ pub(crate) enum Form<Y> {
     Background(ThreadGate),
 }
 
-/// Gate of a background module's thread, and the maximum wait for the thread to end. Dropping the gate asks the thread
-/// to end, and waits for it.
+/// Gate of a background module's thread, and the maximum time to wait for the end of the thread. Dropping this value
+/// asks the thread to end, and waits for its end.
 #[derive(Debug)]
 pub(crate) struct ThreadGate(Arc<Gate>, Duration);
 
@@ -64,20 +64,20 @@ pub enum Refusal {
     Reserved(String),
     /// No module of this name is loaded.
     Unknown(String),
-    /// The module with this name will make no further turn.
+    /// The module with this name exists, but will make no further turn.
     Over(String),
     /// A module has no such setting; contains the names of the module and of the setting.
     NoSetting(String, String),
-    /// A setting has another kind than the value; contains the path of the setting, its kind, and the kind of the
-    /// value.
+    /// A new value for a setting has another kind than the setting; contains the path and the kind of the setting, and
+    /// the kind of the value.
     OtherSetting(AttributeName, AttributeKind, AttributeKind),
-    /// The value for a setting is NaN; contains the path of the setting.
+    /// A new value for a setting is NaN; contains the path of the setting.
     NotANumber(AttributeName),
     /// The declaration of the module is invalid; contains the name of the module, and a sentence.
     Declaration(String, String),
     /// The function that creates the module panicked; contains the name of the module, and the panic message.
     Panicked(String, String),
-    /// A module expects another kind of an attribute than is published.
+    /// A module expects another kind for an attribute than the kind with which the attribute is published.
     OtherKind {
         /// Name of the module that reads the attribute.
         reader: String,
@@ -85,7 +85,7 @@ pub enum Refusal {
         name: AttributeName,
         /// Kind that the reader expects.
         read: AttributeKind,
-        /// Kind in which the attribute is published.
+        /// Kind with which the attribute is published.
         published: AttributeKind,
     },
     /// Another robot has changed the kind of an attribute; contains the path of the attribute, the old kind, and the
@@ -145,7 +145,7 @@ impl<Y> Candidate<Y> {
     }
 }
 
-/// Calls the function that creates a module.
+/// Calls the function that creates a module; returns the module and its declaration.
 fn made<M>(name: &str, make: impl FnOnce(&mut Declare) -> M) -> Result<(M, Declare), Refusal> {
     if !is_name(name) {
         return Err(Refusal::BadName(name.to_owned()));

@@ -1,4 +1,5 @@
-//! Declaration of a module: the attributes that it publishes and reads, its settings, and when it makes turns.
+//! Declaration of a module: the attributes that the module publishes, the attributes that it reads, its settings, and
+//! the condition under which it makes turns.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -8,7 +9,7 @@ use mdle_runtime::Nanos;
 
 use crate::attribute::{AGE, Attribute, AttributeKind, AttributeName, In, Out, Reading, Value, is_name};
 
-/// Registers the attributes of a module while it is created.
+/// Declares the attributes of a module while the module is being created.
 #[derive(Debug, Default)]
 pub struct Declare {
     pub(crate) declared: Declared,
@@ -27,7 +28,7 @@ pub(crate) struct Declared {
     pub(crate) priority: i32,
     pub(crate) relevance: Relevance,
     pub(crate) latency: Nanos,
-    /// `true` if the first exchange is due at the first turn break, regardless of the latency.
+    /// `true` if the first exchange is due at the first turn break, even if the latency has not passed.
     pub(crate) begins_at_once: bool,
     /// Maximum time for which the engine waits for the module's thread to end.
     pub(crate) farewell: Duration,
@@ -61,8 +62,8 @@ pub enum Relevance {
     /// The module makes a turn in every turn of the engine.
     #[default]
     Always,
-    /// The module makes turns while the active plan, a plan that may become active, a safety rule, another robot, or a
-    /// module that makes turns reads it.
+    /// The module makes turns only while it is read by the active plan, a plan that may become active, a safety rule,
+    /// another robot, or a module that makes turns.
     WhenRead,
 }
 
@@ -92,8 +93,8 @@ impl Ports {
 }
 
 impl Declare {
-    /// Declares an attribute that the module publishes. The name must be a valid MDLe name, and differ from all other
-    /// attributes and settings of the module.
+    /// Declares an attribute that the module publishes. The name must be a valid MDLe name that no other attribute or
+    /// setting of the module has.
     pub fn publishes<T: Attribute>(&mut self, name: &str) -> Out<T> {
         Out::new(self.publishes_as(name, T::KIND, None))
     }
@@ -107,13 +108,14 @@ impl Declare {
         self.ports.outs.len().saturating_sub(1)
     }
 
-    /// Declares an attribute of another module that this module reads. The other module may be loaded later or never.
-    /// If the attribute is published with another kind, the module that is loaded last is refused.
+    /// Declares that this module reads an attribute of another module. The other module may be loaded later or never.
+    /// If it publishes the attribute with another kind, the module that is loaded last is refused.
     pub fn reads<T: Attribute>(&mut self, module: &str, attribute: &str) -> In<T> {
         In::new(self.reads_as(module, attribute, T::KIND))
     }
 
-    /// Declares an attribute of another module that this module reads with this kind, and returns its index.
+    /// Declares that this module reads an attribute of another module with the kind `kind`; returns the index of the
+    /// attribute.
     pub(crate) fn reads_as(&mut self, module: &str, attribute: &str, kind: AttributeKind) -> usize {
         for name in [module, attribute] {
             self.check_name(name);
@@ -132,8 +134,8 @@ impl Declare {
         In::new(self.input(ValueSource::Setting(about, reading.clone()), Some(reading)))
     }
 
-    /// Describes an attribute or a setting that was declared before: the unit in which users read and write it (empty
-    /// for the SI unit, or for a kind without units), and a sentence.
+    /// Describes an attribute or a setting that was declared before: the unit in which users read and write it, and a
+    /// sentence. `unit` is empty for the SI unit, and for a kind without units.
     pub fn describe(&mut self, name: &str, unit: &str, doc: &'static str) {
         let known = self.declared.abouts_mut().find(|about| &*about.name == name);
         let Some(about) = known else {
@@ -158,8 +160,8 @@ impl Declare {
         self.declared.doc = doc;
     }
 
-    /// Sets the priority of the module, 0 by default. Modules with higher priority begin their turns first. If time is
-    /// too short, the priority decides which modules are late; it has no other effect on results.
+    /// Sets the priority of the module, 0 by default. Modules with higher priority begin their turns first. If the time
+    /// for a turn is too short, the priority decides which modules are late; it has no other effect on results.
     pub fn priority(&mut self, priority: i32) {
         self.declared.priority = priority;
     }
@@ -170,14 +172,14 @@ impl Declare {
     }
 
     /// Sets the time that a background module needs for one exchange, 0 by default. In stepped time, the module's next
-    /// exchange is at the first turn break after this time has passed on the engine's clock, regardless of the
-    /// computer's speed. A plan that reads the module waits this much longer for the module's first values.
+    /// exchange takes place at the first turn break after this time has passed on the engine's clock, whatever the
+    /// speed of the computer is. A plan that reads the module waits this much longer for the module's first values.
     pub fn latency(&mut self, latency: Nanos) {
         self.declared.latency = latency;
     }
 
-    /// Makes the first exchange due at the first turn break, regardless of the latency. The first exchange publishes
-    /// nothing, and supplies the values that the module reads.
+    /// Makes the first exchange due at the first turn break, even if the latency has not passed. The first exchange
+    /// publishes nothing, but supplies the values that the module reads.
     pub(crate) fn begins_at_once(&mut self) {
         self.declared.begins_at_once = true;
     }
@@ -211,14 +213,14 @@ impl Declare {
         }
     }
 
-    /// Records an error, unless an earlier one is recorded.
+    /// Records an error in the declaration, unless an earlier error is recorded.
     fn refuse(&mut self, sentence: String) {
         self.fault.get_or_insert(sentence);
     }
 }
 
 impl Declared {
-    /// Returns the attributes that the module publishes, and its settings.
+    /// Returns the descriptions of the attributes that the module publishes, and of its settings.
     pub(crate) fn abouts(&self) -> impl Iterator<Item = &About> {
         self.publishes.iter().chain(self.settings().map(|(about, _)| about))
     }

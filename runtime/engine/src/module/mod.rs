@@ -17,12 +17,12 @@ use mdle_runtime::Nanos;
 use crate::attribute::{Attribute, In, Out, Reading};
 
 /// A registered module of an engine whose robot has the output `Y`. The function that creates the module declares its
-/// attributes; unloading drops the module.
+/// attributes; unloading the module drops it.
 ///
-/// A module may be called on any thread, but only by one thread at a time.
+/// Any thread may call a module, but only one thread at a time.
 pub trait Module<Y>: Send {
-    /// Makes a turn: reads the robot's output of this turn, and the values that modules had published by the end of the
-    /// previous turn.
+    /// Makes a turn of the module. It can read the robot's output of this turn, and the values that modules had
+    /// published by the end of the previous turn.
     ///
     /// # Errors
     /// Returns the reason why the module cannot continue, for the operator. The module then makes no further turn.
@@ -31,8 +31,8 @@ pub trait Module<Y>: Send {
     /// Called before the module's first turn, and before the first turn after [`Module::stop`].
     fn start(&mut self) {}
 
-    /// Called after the module's last turn when it is stopped, because a user has stopped it or nothing reads it at
-    /// present.
+    /// Called after the module's last turn when the module is stopped, because a user has stopped it or because nothing
+    /// reads it at present.
     fn stop(&mut self) {}
 }
 
@@ -54,10 +54,10 @@ impl<Y> Module<Y> for Box<dyn Module<Y>> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault(pub String);
 
-/// A turn of the engine, as it is passed to a module.
+/// Data of one turn of the engine, passed to a module.
 #[derive(Debug)]
 pub struct Turn<'t, Y> {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub number: u64,
     /// Time of the turn on the engine's clock; zero in the first turn.
     pub now: Nanos,
@@ -81,8 +81,8 @@ impl<Y> Turn<'_, Y> {
         self.ports.reading(attribute)
     }
 
-    /// Publishes a value at the turn break that ends this turn. If a turn publishes several values, only the last one
-    /// counts; a value that contains NaN is not published.
+    /// Publishes a value at the turn break that ends this turn. If a turn publishes several values of an attribute,
+    /// only the last one is used; a value that contains NaN is not published.
     pub fn publish<T: Attribute>(&mut self, attribute: Out<T>, value: T) {
         self.ports.publish(attribute, value);
     }

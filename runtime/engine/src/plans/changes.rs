@@ -1,4 +1,4 @@
-//! Collects changes of plans between turns in the form in which a record stores them.
+//! Collects the changes of plans between two turns, in the form in which a record stores them.
 
 use std::collections::BTreeMap;
 
@@ -9,15 +9,15 @@ use super::event::When;
 /// The changes of plans since the last turn.
 #[derive(Debug, Default)]
 pub(crate) struct PlanChanges {
-    /// Maps the hash of a plan's files to their number in the record. Only hashes are kept, because a run may have any
+    /// Maps a hash of a plan's files to their number in the record. Only hashes are kept, because a run may have any
     /// number of plans.
     files: BTreeMap<[u8; 32], u32>,
     changes: Vec<RecordedChange>,
 }
 
 impl PlanChanges {
-    /// Records that the plan `plan` in these files is armed to take over at `when`. Files that the record already
-    /// contains are not recorded again.
+    /// Records that the plan `plan`, which is in these files, is armed to take over at the moment `when`. Files that
+    /// the record already contains are not recorded again.
     pub(crate) fn armed(&mut self, files: &[(String, String)], plan: &str, when: When) {
         let next = u32::try_from(self.files.len()).unwrap_or(u32::MAX);
         let number = *self.files.entry(hash(files)).or_insert_with(|| {
@@ -32,7 +32,7 @@ impl PlanChanges {
         self.changes.push(change);
     }
 
-    /// Takes the changes since the last call.
+    /// Removes and returns the changes since the last call.
     pub(crate) fn take(&mut self) -> Vec<RecordedChange> {
         std::mem::take(&mut self.changes)
     }

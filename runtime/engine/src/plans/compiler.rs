@@ -1,5 +1,5 @@
-//! Compiles plans on a separate thread while turns are made. Carries out one order at a time, orders of the operator
-//! first.
+//! Compiles plans on a separate thread while turns continue. Carries out one order at a time; orders of the operator
+//! come first.
 
 use std::collections::VecDeque;
 use std::io;
@@ -9,19 +9,19 @@ use std::thread;
 use super::EngineAlphabet;
 use super::order::{Compile, Order, Outcome};
 
-/// Maximum number of orders of the operator that wait for the compiler.
+/// Maximum number of the operator's orders that wait for the compiler.
 const WAITING: usize = 16;
 
 /// The compiler of an engine.
 pub(crate) enum Compiler<A: EngineAlphabet> {
     /// A separate thread, which ends when this value is dropped.
     Thread(CompilerThread<A>),
-    /// A function that carries out each order at once, so that runs with the same inputs are equal; and the outcomes of
-    /// the orders.
+    /// A function that carries out each order immediately, so that runs with the same inputs are equal, and the
+    /// outcomes of these orders.
     AtOnce(Box<Compile<A>>, VecDeque<Outcome<A>>),
 }
 
-/// Orders for plans to take over that were waiting: one of the operator, and one of another robot.
+/// Orders to replace the plan that were waiting for the compiler: one from the operator, and one from another robot.
 type WaitingOrders<A> = [Option<Order<A>>; 2];
 
 /// The compiler's thread, which ends when this value is dropped.
@@ -34,17 +34,17 @@ struct Counter<A: EngineAlphabet> {
 }
 
 struct CompilerState<A: EngineAlphabet> {
-    /// Orders of the operator.
+    /// Orders of the operator that wait.
     waiting: VecDeque<Order<A>>,
-    /// Newest order of another robot. It is carried out after all orders of the operator.
+    /// Newest order of another robot. The compiler carries it out after all orders of the operator.
     sent: Option<Order<A>>,
     done: VecDeque<Outcome<A>>,
     quits: bool,
 }
 
 impl<A: EngineAlphabet> Compiler<A> {
-    /// Passes an order to the compiler. An order for a plan to take over cancels and returns earlier orders of this
-    /// type that still wait; an order of another robot does not cancel an order of the operator.
+    /// Passes an order to the compiler. An order to replace the plan cancels and returns earlier orders of this type
+    /// that still wait. However, an order of another robot does not cancel an order of the operator.
     ///
     /// # Errors
     /// Fails with a sentence if too many orders wait.
@@ -58,7 +58,7 @@ impl<A: EngineAlphabet> Compiler<A> {
         }
     }
 
-    /// Removes and returns the orders for plans to take over that still wait.
+    /// Removes and returns all waiting orders that contain a plan to take over.
     pub(crate) fn take_back(&self) -> WaitingOrders<A> {
         match self {
             Self::Thread(thread) => thread.0.lock().take_back(),
@@ -66,7 +66,7 @@ impl<A: EngineAlphabet> Compiler<A> {
         }
     }
 
-    /// Removes and returns the order of another robot that still waits; `None` if there is none.
+    /// Removes and returns the waiting order of another robot; `None` if no such order waits.
     pub(crate) fn take_back_sent(&self) -> Option<Order<A>> {
         match self {
             Self::Thread(thread) => thread.0.lock().sent.take(),
@@ -74,7 +74,7 @@ impl<A: EngineAlphabet> Compiler<A> {
         }
     }
 
-    /// Returns the outcome of the next finished order; `None` if there is none. Never waits.
+    /// Returns the outcome of the next finished order; `None` if no order is finished. Never waits.
     pub(crate) fn done(&mut self) -> Option<Outcome<A>> {
         match self {
             Self::Thread(thread) => thread.done(),
@@ -130,7 +130,7 @@ impl<A: EngineAlphabet> CompilerState<A> {
         [self.take_back_own(), self.sent.take()]
     }
 
-    /// Removes and returns the operator's order for a plan to take over that still waits; `None` if there is none.
+    /// Removes and returns the operator's waiting order to replace the plan; `None` if no such order waits.
     fn take_back_own(&mut self) -> Option<Order<A>> {
         let place = self.waiting.iter().position(|order| order.task.takes_over())?;
         self.waiting.remove(place)
@@ -142,7 +142,7 @@ impl<A: EngineAlphabet> Counter<A> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Carries out orders until the compiler is to quit.
+    /// Carries out orders until the compiler has to quit.
     fn serve(&self, compile: &Compile<A>) {
         let mut state = self.lock();
         loop {

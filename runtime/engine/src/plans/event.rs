@@ -1,17 +1,17 @@
-//! Moments at which plans take over, and the events of plans at run time.
+//! Moments at which plans take over, and events that happen to plans at run time.
 
 use std::fmt;
 use std::sync::Arc;
 
-/// Moment at which a new plan takes over. For any moment, the robot gets exactly one input in that turn: the input of
-/// the new plan's first turn.
+/// Moment at which a new plan takes over. In the turn in which the plan takes over, the robot gets exactly one input:
+/// the input of the new plan's first turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum When {
-    /// The next turn.
+    /// The plan takes over in the next turn.
     Now,
-    /// The turn in which the current atom ends.
+    /// The plan takes over in the turn in which the current atom ends.
     AtomEnds,
-    /// The turn in which the current plan ends.
+    /// The plan takes over in the turn in which the current plan ends.
     PlanEnds,
 }
 
@@ -42,10 +42,11 @@ impl fmt::Display for When {
     }
 }
 
-/// An event about a request, with the number of the request; the first plan has number 1.
+/// An event about a request. Most variants begin with the number of the request; the first plan has number 1.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PlanEvent {
-    /// The request was refused, and nothing has changed; contains the diagnostics of the text, or a sentence.
+    /// The request was refused, and nothing has changed; contains the diagnostics of the text, or a sentence with the
+    /// reason.
     Refused(u32, String),
     /// The text has warnings, given as diagnostics. Another event for the request follows.
     Warned(u32, String),
@@ -55,7 +56,7 @@ pub enum PlanEvent {
     Superseded(u32),
     /// The plan with this name was armed, but another plan was armed before it could take over.
     Replaced(u32, Arc<str>),
-    /// The plan is compiled, and takes over when its moment comes.
+    /// The plan is compiled, and will take over at its moment.
     Armed(u32),
     /// The plan was cancelled before it took over.
     Cancelled(u32),
@@ -91,8 +92,7 @@ impl PlanEvent {
         }
     }
 
-    /// Returns `true` if this event decides the request: the plan has begun or will never begin, or the plans are
-    /// stored.
+    /// Returns `true` if this event decides the request, because the plan has begun, will never begin, or is stored.
     pub(crate) fn is_decision(&self) -> bool {
         !matches!(self, Self::Warned(..) | Self::Armed(_))
     }

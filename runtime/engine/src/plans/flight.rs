@@ -1,4 +1,4 @@
-//! A plan's turn, with all data that it needs, in the form in which threads exchange it.
+//! A plan's turn with all data that it needs, which threads pass to each other.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -13,7 +13,7 @@ use crate::module::{self, Fault, Module, panicked};
 /// A plan's turn, with the plan that may take over in this turn.
 pub(crate) struct Flight<A: Alphabet> {
     pub(crate) current: Running<A>,
-    /// Plan that takes over in this turn if its moment comes, with this moment.
+    /// Plan that takes over in this turn if its moment comes; contains the plan and this moment.
     pub(crate) next: Option<(Running<A>, When)>,
     /// Values that the next plan reads from modules.
     pub(crate) published: Published,
@@ -25,8 +25,7 @@ pub(crate) struct Flight<A: Alphabet> {
     pub(crate) at: Nanos,
 }
 
-/// Place where the control thread and the plan's thread exchange a turn. It is never locked while the code of a plan
-/// runs, so a plan that hangs blocks only its own turn.
+/// Time of the turn.
 pub(crate) struct Desk<A: Alphabet>(Mutex<OnDesk<A>>);
 
 struct OnDesk<A: Alphabet> {
@@ -55,12 +54,12 @@ impl<A: Alphabet> Desk<A> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts a turn on the desk, before the threads are called.
+    /// Stores a turn for the module that makes it, before the threads are called.
     pub(crate) fn lay(&self, flight: Box<Flight<A>>) {
         self.lock().flight = Some(flight);
     }
 
-    /// Takes the turn and its other results from the desk.
+    /// Removes and returns the stored turn and its other results.
     pub(crate) fn take(&self) -> Landed<A> {
         let mut desk = self.lock();
         Landed { flight: desk.flight.take(), replaced: desk.replaced.take(), panic: desk.panic.take() }
@@ -68,14 +67,14 @@ impl<A: Alphabet> Desk<A> {
 }
 
 impl<A: EngineAlphabet> Flight<A> {
-    /// Returns the data for the turns of a plan that has not begun.
+    /// Creates the data for the turns of a plan that has not begun.
     pub(crate) fn new(current: Running<A>) -> Box<Self> {
         let transitions = Transitions::default();
         Box::new(Self { current, next: None, published: Published::NONE, transitions, turn: None, at: Nanos::ZERO })
     }
 
-    /// Makes the turn. A replaced plan is put on the desk before its successor makes a turn, because the successor may
-    /// hang.
+    /// Makes the turn. If a plan is replaced, it is stored in `desk` before its successor makes a turn, because the
+    /// successor may hang.
     fn fly(&mut self, y: &A::Output, now: Nanos, desk: &Desk<A>) {
         let turn = self.current.turn(y, now, &mut self.transitions);
         let takes_over = match &self.next {
@@ -98,7 +97,7 @@ impl<A: EngineAlphabet> Flight<A> {
     }
 }
 
-/// Module that makes the turns of plans: the turn that is on the desk.
+/// Module that makes the turns of plans: in each turn, it makes the plan's turn that is stored for it.
 pub(crate) struct PlanModule<A: Alphabet>(pub(crate) Arc<Desk<A>>);
 
 impl<A: EngineAlphabet> Module<A::Output> for PlanModule<A> {

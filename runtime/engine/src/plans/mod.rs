@@ -1,5 +1,5 @@
-//! Plans at run time: the active plan, the armed plan, which is about to take over, the suspended plan, to which the
-//! engine can roll back, and the stored plans (paper, sections III-D and III-H).
+//! Plans at run time (paper, sections III-D and III-H): the active plan; the armed plan, which is about to take over;
+//! the suspended plan, to which the engine can roll back; and the stored plans.
 //!
 //! A front end makes requests at a turn break, such as [`Plans::swap`], and reads the answers with
 //! [`Plans::take_events`] after each turn.
@@ -50,8 +50,7 @@ pub struct Plans<A: EngineAlphabet> {
     /// The plan that was replaced by the plan on trial, with the time of the turn in which it was suspended; `None` if
     /// no plan is on trial.
     suspended: Option<(Running<A>, Nanos)>,
-    /// Time at which the plan that continues in the next turn was suspended; `None` if no suspended plan continues in
-    /// the next turn.
+    /// If a suspended plan continues in the next turn, the time at which it was suspended; `None` otherwise.
     resumes: Option<Nanos>,
     trial: Nanos,
     trial_ends: Nanos,
@@ -64,16 +63,17 @@ pub struct Plans<A: EngineAlphabet> {
     last: u32,
     /// Number of the last plan that began.
     begun: u32,
-    /// Number of the last request before a safety rule replaced the plan; 0 if no rule has replaced it.
+    /// Number of the last request that was made before a safety rule replaced the plan; 0 if no rule has replaced a
+    /// plan.
     overruled: u32,
-    /// Number of the request for the plan that may take over in the running turn; `None` if no plan may take over.
+    /// Number of the request for the plan that may take over in the running turn; `None` if there is no such plan.
     aloft: Option<u32>,
     peers: PeerRequests,
     driving: Driving,
     /// Reason why the active plan replaced the previous plan.
     reason: String,
     events: Vec<PlanEvent>,
-    /// Values to drop on another thread, because dropping a large plan takes longer than a turn allows.
+    /// Values that another thread has to drop, because dropping a large plan takes longer than a turn allows.
     spent: Vec<Spent>,
     /// Changes of plans for the record; `None` if the run is not recorded.
     changes: Option<PlanChanges>,
@@ -87,11 +87,11 @@ struct Driving {
     name: Arc<str>,
 }
 
-/// A value of any type that is no longer needed.
+/// A value that is no longer needed, of any type.
 type Spent = Box<dyn Any + Send>;
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Returns the plans of a robot whose first plan is `first`.
+    /// Creates the plans of a robot whose first plan is `first`.
     #[must_use]
     pub fn new(first: LoadedPlan<A>) -> Self {
         let paths = first.paths().to_vec();
@@ -126,7 +126,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.changes = Some(PlanChanges::default());
     }
 
-    /// Takes the changes since the last call.
+    /// Removes and returns the changes since the last call.
     pub(crate) fn take_changes(&mut self) -> Vec<RecordedChange> {
         self.changes.as_mut().map(PlanChanges::take).unwrap_or_default()
     }
@@ -150,7 +150,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.trial
     }
 
-    /// Takes the events since the last call, in order.
+    /// Removes and returns the events since the last call, in order.
     pub fn take_events(&mut self) -> impl Iterator<Item = PlanEvent> {
         self.events.drain(..)
     }
@@ -173,7 +173,7 @@ impl<A: EngineAlphabet> Plans<A> {
         &self.paths
     }
 
-    /// Returns the name of the plan for this request; `None` if the plan is neither active nor armed.
+    /// Returns the name of the plan that belongs to this request; `None` if the plan is neither active nor armed.
     pub(crate) fn name_of(&self, ticket: u32) -> Option<&str> {
         let armed = self.armed.iter().map(|(plan, _)| (plan.ticket, &*plan.name));
         let plans = armed.chain([(self.driving.ticket, &*self.driving.name)]);
@@ -186,8 +186,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.armed.as_ref().map(|(plan, when)| (&*plan.name, *when))
     }
 
-    /// Returns the reason why the plan for this request must not take over now; `None` if it may. Only plans of other
-    /// robots are refused.
+    /// Returns the reason why the plan of this request must not take over now; `None` if it may take over. Only plans
+    /// of other robots are refused.
     fn refuses(&self, ticket: u32) -> Option<&'static str> {
         let mut waiting = self.armed.iter().map(|(plan, _)| plan.ticket).chain(self.aloft);
         let waits = |waiting: u32| !self.peers.has(waiting);
@@ -213,7 +213,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.current.as_ref().and_then(|flight| flight.current.machine.as_ref())
     }
 
-    /// Returns the start time of the active plan on the engine's clock. Time for which the plan was suspended is added.
+    /// Returns the start time of the active plan on the engine's clock, plus the time for which the plan was suspended.
     #[must_use]
     pub fn zero(&self) -> Nanos {
         self.current.as_ref().map_or(Nanos::ZERO, |flight| flight.current.zero)
@@ -224,7 +224,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.spent.drain(..)
     }
 
-    /// Returns the module attributes that the active plan reads; no attributes before the plan has begun.
+    /// Returns the module attributes that the active plan reads; empty before the plan has begun.
     pub(crate) fn driving_reads(&self) -> &'static [ModuleRead] {
         let driving = self.current.as_ref().filter(|flight| flight.current.machine.is_some());
         driving.map_or(&[], |flight| flight.current.reads)

@@ -1,4 +1,4 @@
-//! Orders to the compiler, with their sources and their outcomes.
+//! Orders to the compiler, with their sources and outcomes.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ pub enum PlanSource {
 
 /// Result of compiling a text: plans and warnings.
 pub struct CompiledPlans<A: EngineAlphabet> {
-    /// The plans that no other plan of the text uses.
+    /// Plans of the text that no other plan of the text uses.
     pub plans: Vec<StoredPlan<A>>,
     /// Warnings in readable form; empty if there are no warnings.
     pub warnings: String,
@@ -56,7 +56,7 @@ pub(crate) enum SlowTask<A: EngineAlphabet> {
 /// Result of an order.
 pub(crate) struct Outcome<A: EngineAlphabet> {
     pub(crate) ticket: u32,
-    /// The plans, or the diagnostics in readable form.
+    /// The resulting plans, or the diagnostics in readable form.
     pub(crate) product: Result<Product<A>, String>,
 }
 
@@ -64,11 +64,11 @@ pub(crate) struct Outcome<A: EngineAlphabet> {
 pub(crate) struct Product<A: EngineAlphabet> {
     /// Plans to be stored, and their warnings.
     pub(crate) compiled: CompiledPlans<A>,
-    /// The plan that takes over, before its first turn; `None` if no plan takes over.
+    /// The plan that takes over; `None` if no plan takes over. It has not made a turn yet.
     pub(crate) next: Option<NextPlan<A>>,
 }
 
-/// A plan that takes over, before its first turn.
+/// A plan that takes over and has not made a turn yet.
 pub(crate) struct NextPlan<A: EngineAlphabet> {
     pub(crate) plan: LoadedPlan<A>,
     /// Name and text of each file of the plan, the plan's own file first.
@@ -98,7 +98,7 @@ impl<A: EngineAlphabet> SlowTask<A> {
         matches!(self, Self::Compile(PlanSource::Peer { .. }, _))
     }
 
-    /// Returns `true` if the order is for a plan that takes over.
+    /// Returns `true` if the order contains a plan that takes over.
     pub(crate) fn takes_over(&self) -> bool {
         match self {
             Self::Compile(_, when) => when.is_some(),

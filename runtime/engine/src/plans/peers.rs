@@ -1,33 +1,34 @@
-//! Requests of other robots for plans to take over. After a safety rule has replaced or ended a plan, they are refused.
+//! Handles the requests of other robots that a new plan replace the current plan. They are refused after a safety rule
+//! has replaced or ended a plan.
 
 use super::PlanEvent;
 
-/// Reason to bar plans of other robots: a safety rule has replaced the plan.
+/// Reason for refusing plans of other robots after a safety rule has replaced the plan.
 pub(crate) const REPLACED: &str = "a safety rule has replaced the plan; the robot takes plans again once its operator \
                                    lets one take over in `mdle shell`, or begins a new run";
-/// Reason to bar plans of other robots: a safety rule has ended a plan.
+/// Reason for refusing plans of other robots after a safety rule has ended a plan.
 pub(crate) const ENDED: &str = "a safety rule has ended a plan; the robot takes plans again once its operator lets one \
                                 take over in `mdle shell`, or begins a new run";
 
-/// Requests of other robots, and the bar that a safety rule has imposed on them.
+/// Requests of other robots, and the ban on these requests if a safety rule has imposed one.
 #[derive(Debug, Default)]
 pub(super) struct PeerRequests {
     /// Numbers of the requests whose plans have neither begun nor been refused yet.
     open: Vec<u32>,
-    /// Events of these requests that have not been taken yet. The events that a session takes contain them as well.
+    /// Events of these requests that have not been taken yet. A session receives them as well.
     events: Vec<PlanEvent>,
     bar: Option<Bar>,
 }
 
-/// A bar against plans of other robots.
+/// A ban on requests of other robots, which a safety rule has imposed. Banned requests are refused.
 #[derive(Debug)]
 struct Bar {
-    /// Number of the last request before the bar was imposed.
+    /// Number of the last request that was made before the ban.
     last: u32,
-    /// Reason for the bar, as a sentence.
+    /// Reason why the requests are refused, as a sentence.
     reason: &'static str,
-    /// `true` once the bar is lifted, because a plan that the operator requested after the bar has begun. Requests that
-    /// other robots made after the bar are then permitted.
+    /// `true` if the ban has been lifted, because a plan has begun that the operator requested after the ban. Requests
+    /// that other robots have made since the ban are then permitted.
     is_lifted: bool,
 }
 
@@ -51,32 +52,32 @@ impl PeerRequests {
         }
     }
 
-    /// Takes the events of other robots' requests.
+    /// Removes and returns the events of other robots' requests.
     pub(super) fn take_events(&mut self) -> Vec<PlanEvent> {
         std::mem::take(&mut self.events)
     }
 
-    /// Bars requests of other robots for this reason: requests up to number `last` permanently, later ones until the
-    /// bar is lifted.
+    /// Bans requests of other robots for this reason. Requests up to number `last` remain banned; later ones are banned
+    /// until the ban is lifted.
     pub(super) fn bar(&mut self, last: u32, reason: &'static str) {
         self.bar = Some(Bar { last, reason, is_lifted: false });
     }
 
-    /// Lifts the bar because a plan has begun that no other robot requested, provided that its request `ticket` was
-    /// made after the bar.
+    /// Permits new requests from other robots again, because the plan that the operator requested with the number
+    /// `ticket` has begun. Has no effect if the operator requested the plan before the ban.
     pub(super) fn lift(&mut self, ticket: u32) {
         if let Some(bar) = self.bar.as_mut().filter(|bar| ticket > bar.last) {
             bar.is_lifted = true;
         }
     }
 
-    /// Returns the reason for the bar if another robot made this request and the request is barred; `None` otherwise.
+    /// Returns the reason for the ban if another robot made this request and the request is banned; `None` otherwise.
     pub(super) fn barred(&self, ticket: u32) -> Option<&'static str> {
         let bar = self.bar.as_ref().filter(|bar| !bar.is_lifted || ticket <= bar.last)?;
         self.has(ticket).then_some(bar.reason)
     }
 
-    /// Returns the event for a cancelled request: a refusal if the request is barred.
+    /// Returns the event for a cancelled request: a refusal if the request is banned.
     pub(super) fn cancelled(&self, ticket: u32) -> PlanEvent {
         match self.barred(ticket) {
             Some(reason) => PlanEvent::Refused(ticket, reason.to_owned()),

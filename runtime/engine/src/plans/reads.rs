@@ -8,7 +8,7 @@ use crate::attribute::{AGE, AttributeName, Reading};
 use crate::board::{Board, Post};
 use crate::tree::listed;
 
-/// Time for which a plan waits for the attributes that it reads, in addition to the latency that the module declares.
+/// Time for which a plan waits for the attributes that it reads, in addition to the latency of their module.
 const PATIENCE: Nanos = Nanos(2_000_000_000);
 
 /// Reason why a plan cannot begin in this turn.
@@ -39,14 +39,14 @@ pub(super) fn published(reads: &'static [ModuleRead], board: &Board, now: Nanos)
     if missing.is_empty() { Ok(numbers) } else { Err(Unready::Missing(missing)) }
 }
 
-/// Returns the time for which a plan waits for attributes that were not published yet.
+/// Returns the time for which a plan waits for the attributes `missing`, which have not been published yet.
 pub(super) fn patience(missing: &[&ModuleRead], board: &Board) -> Nanos {
     let latency = |read: &&ModuleRead| Some(board.posts().get(board.place_of(read)?)?.latency);
     let longest = missing.iter().filter_map(latency).max().unwrap_or(Nanos::ZERO);
     Nanos(PATIENCE.0.saturating_add(longest.0))
 }
 
-/// Returns the error message about a plan that reads attributes that were not published in time.
+/// Returns the error message about attributes that a plan reads and that were not published in time.
 pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
     let seconds = patience(missing, board).seconds();
     let is_other = |read: &&&ModuleRead| read.attribute != AGE || others(read.module, missing).next().is_none();
@@ -65,8 +65,8 @@ pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
     format!("the plan reads {paths}, which no module has published within {seconds} s{there_are}")
 }
 
-/// Returns the end of a sentence about an attribute that does not exist: it lists the attributes of the module or, if
-/// the module is not loaded, proposes a similar name and explains how to load a module.
+/// Returns the end of a sentence about an attribute that does not exist. It lists the attributes of the module. If the
+/// module is not loaded, it proposes a similar name and explains how to load a module.
 fn publishers(read: &ModuleRead, board: &Board) -> String {
     let ModuleRead { module, attribute, .. } = read;
     let own: Vec<_> = board.of(module).map(|post| &*post.name.attribute).collect();
@@ -124,8 +124,8 @@ pub(crate) fn check(reads: &[ModuleRead], board: &Board) -> Result<(), String> {
     reads.iter().try_for_each(check)
 }
 
-/// Returns the age, at time `now`, of the oldest of these attributes; an attribute that was never published is as old
-/// as the run.
+/// Returns the age, at time `now`, of the oldest of these attributes. For an attribute that was never published, this
+/// is the age of the run.
 pub(crate) fn oldest<'r>(reads: impl Iterator<Item = &'r ModuleRead>, board: &Board, now: Nanos) -> Nanos {
     let age = |read: &ModuleRead| {
         let at = match read.attribute {
@@ -140,7 +140,7 @@ pub(crate) fn oldest<'r>(reads: impl Iterator<Item = &'r ModuleRead>, board: &Bo
 /// Checks that the kind of an attribute matches the unit in which a plan reads it.
 ///
 /// # Errors
-/// Fails with a sentence, without its subject, if they do not match.
+/// Fails with a sentence without its subject if kind and unit do not match.
 fn check_kind(read: &ModuleRead, post: &Post) -> Result<(), String> {
     let Post { name, about, .. } = post;
     let quantity = about.kind.quantity();
@@ -163,8 +163,9 @@ fn number(read: &ModuleRead, reads: &[ModuleRead], board: &Board, now: Nanos) ->
     value.number().map(|value| PublishedNumber { value, at: *at, age: now.since(*at) })
 }
 
-/// Returns the publication time of the oldest value that is read from this module; if only the module's age is read,
-/// returns the publication time of its newest value. Returns `None` if one of the values was not published.
+/// Returns the publication time of the oldest value that is read from this module. If only the age of the module is
+/// read, returns the publication time of the module's newest value. Returns `None` if one of the values was not
+/// published.
 fn oldest_of(module: &str, reads: &[ModuleRead], board: &Board) -> Option<Nanos> {
     let mut attributes = others(module, reads).peekable();
     if attributes.peek().is_none() {

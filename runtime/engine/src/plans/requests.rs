@@ -1,4 +1,5 @@
-//! Requests of a front end: compile, store, load, delete and start plans, and cancel a plan that is about to take over.
+//! Requests of a front end to compile, store, load, delete and start plans, and to cancel a plan that is about to take
+//! over.
 
 use std::io;
 use std::sync::Arc;
@@ -34,8 +35,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.peers.take_events()
     }
 
-    /// Stores a plan under its name, and replaces an earlier plan with this name; an active plan continues. At most
-    /// [`MOST_STORED`] plans are stored.
+    /// Stores a plan under its name, in place of an earlier plan with this name. If the earlier plan is active, it
+    /// continues to run. At most [`MOST_STORED`] plans are stored.
     ///
     /// # Errors
     /// Fails with a sentence if too many plans are stored.
@@ -74,8 +75,8 @@ impl<A: EngineAlphabet> Plans<A> {
 
     /// Requests that the plan of a text take over; returns the number of the request. The plan is also stored, unless
     /// another robot has sent it. The answer at a later turn break is [`PlanEvent::Refused`], or [`PlanEvent::Armed`]
-    /// and then [`PlanEvent::Began`]. A later request supersedes this one if it is not compiled yet; if its plan is
-    /// armed but has not begun, a later request replaces the plan. A request of another robot never does this to a
+    /// and then [`PlanEvent::Began`]. A later request supersedes this request before it is compiled, and replaces its
+    /// plan if the plan is armed but has not begun. However, a request of another robot never supersedes or replaces a
     /// request of the operator: it is refused while a plan of the operator is armed.
     pub fn swap(&mut self, source: PlanSource, when: When) -> u32 {
         self.order(SlowTask::Compile(source, Some(when)))
@@ -90,7 +91,8 @@ impl<A: EngineAlphabet> Plans<A> {
         Ok(self.order(SlowTask::Begin(plan, when)))
     }
 
-    /// Requests that a loaded plan take over; returns the number of the request. The plan is armed at once.
+    /// Requests that a plan take over that is already loaded; returns the number of the request. The plan is armed at
+    /// once.
     pub fn replace(&mut self, plan: LoadedPlan<A>, when: When) -> u32 {
         self.last = self.last.saturating_add(1);
         let number = self.last;
@@ -98,8 +100,8 @@ impl<A: EngineAlphabet> Plans<A> {
         number
     }
 
-    /// Requests that a compiled plan take over in the next turn; returns the number of the request. The plan is
-    /// armed at once, and a record of the run contains its files.
+    /// Requests that a compiled plan take over in the next turn; returns the number of the request. The plan is armed
+    /// at once, and its files become part of the record of the run.
     ///
     /// # Errors
     /// Fails with a sentence if the plan replays a path that the first plan does not.
@@ -114,8 +116,8 @@ impl<A: EngineAlphabet> Plans<A> {
         }
     }
 
-    /// Cancels requests for plans to take over that wait for the compiler, and the armed plan. Does not cancel a text
-    /// that is being compiled.
+    /// Cancels the armed plan, and the requests for plans to take over that wait for the compiler. Does not cancel a
+    /// text that is being compiled.
     pub fn cancel(&mut self) {
         if self.armed.is_some() {
             self.note(RecordedChange::Cancelled);

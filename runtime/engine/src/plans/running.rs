@@ -35,26 +35,26 @@ where
 pub(crate) struct Running<A: Alphabet> {
     /// Number of the request for the plan.
     pub(crate) ticket: u32,
-    /// Number of the plan, counting from 1 the plans that have begun; 0 before the plan begins.
+    /// Number of the plan among the plans that have begun, counting from 1; 0 before the plan begins.
     pub(crate) number: u32,
     pub(crate) name: Arc<str>,
     /// The loaded plan before its first turn; `None` afterwards.
     ready: Option<LoadedPlan<A>>,
     pub(crate) machine: Option<Machine<LoadedPlan<A>>>,
-    /// Start time of the plan on the engine's clock. Time for which the plan was suspended is added.
+    /// Start time of the plan on the engine's clock, plus the time for which the plan was suspended.
     pub(crate) zero: Nanos,
     /// Attributes of modules that the plan reads.
     pub(crate) reads: &'static [ModuleRead],
     /// Names of the other robots that the plan refers to.
     pub(crate) robots: Box<[&'static str]>,
-    /// Time since which the plan has been waiting for the attributes that it reads; `None` if it has never waited.
+    /// Time at which the plan began to wait for the attributes that it reads; `None` if it has never waited.
     waits_since: Option<Nanos>,
     /// `true` if the plan continues in this turn after it was suspended.
     is_back: bool,
 }
 
 impl<A: Alphabet> Running<A> {
-    /// Returns a plan before its first turn.
+    /// Creates a plan before its first turn.
     pub(crate) fn new(ticket: u32, plan: LoadedPlan<A>) -> Self {
         let (reads, robots) = (Plan::reads(&plan), Plan::robots(&plan).into());
         let name = Plan::name(&plan, 0).into();

@@ -22,12 +22,12 @@ pub struct StoredPlan<A: EngineAlphabet> {
     pub facts: PlanFacts,
 }
 
-/// Facts about a plan as text for the operator; a text is empty if it is not known.
+/// Texts with facts about a plan, for the operator. The text of an unknown fact is empty.
 #[derive(Debug, Clone, Default)]
 pub struct PlanFacts {
-    /// Warnings about the plan's file, or a sentence that there are none.
+    /// Warnings about the plan's file; if there are no warnings, a sentence that says so.
     pub diagnostics: Arc<str>,
-    /// Figures of the static analysis, as of `mdlec analyze`.
+    /// Results of the static analysis, as `mdlec analyze` prints them.
     pub analysis: Arc<str>,
 }
 

@@ -14,7 +14,7 @@ use super::running::Running;
 use super::{Driving, EngineAlphabet, NoTrial, PlanEvent, Plans, When};
 use crate::board::Board;
 
-/// Maximum number of events kept for a session.
+/// Maximum number of events that are kept for a session.
 const MOST_EVENTS: usize = 256;
 
 /// Result of the plan's turn.
@@ -28,8 +28,9 @@ pub(crate) enum PlanTurn<U> {
 }
 
 impl<A: EngineAlphabet> Plans<A> {
-    /// Puts the plan's turn, with output `y` at time `now`, on the desk of the plan module; returns the values that the
-    /// plan reads from modules. Returns `None` if the plan cannot begin yet and therefore makes no turn.
+    /// Hands the plan's turn at time `now` to the plan module, which makes it; `y` is the output of that turn. Returns
+    /// the values that the plan reads from modules. Returns `None` if the plan cannot begin yet and therefore makes no
+    /// turn.
     ///
     /// # Errors
     /// Fails with a sentence if the first plan can never begin.
@@ -61,7 +62,7 @@ impl<A: EngineAlphabet> Plans<A> {
         published
     }
 
-    /// Takes the armed plan if it can begin in the turn at `now`; returns the plan, its moment, and the values that it
+    /// Removes and returns the armed plan if it can begin in the turn at `now`, with its moment and the values that it
     /// reads from modules.
     fn ready_to_follow(&mut self, now: Nanos, board: &Board) -> Option<(Running<A>, When, Published)> {
         let (mut next, when) = self.armed.take_if(|_| self.current.is_some())?;
@@ -76,7 +77,8 @@ impl<A: EngineAlphabet> Plans<A> {
         None
     }
 
-    /// Takes the plan's turn at time `now` from the desk, and writes the active plan's transitions to `transitions`.
+    /// Takes the plan's turn at time `now` back from the plan module, and writes the active plan's transitions to
+    /// `transitions`.
     pub(crate) fn land(&mut self, now: Nanos, transitions: &mut Transitions) -> PlanTurn<A::Input> {
         let Landed { flight, replaced, panic } = self.desk.take();
         if let Some(message) = panic {
@@ -156,7 +158,7 @@ impl<A: EngineAlphabet> Plans<A> {
     }
 
     /// Replaces the active plan at once and without a trial, on behalf of a supervisor. Cancels all plans that were
-    /// about to take over, including those that are being compiled, and bars plans of other robots.
+    /// about to take over, including plans that are being compiled, and bans plans of other robots.
     pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
         self.peers.bar(self.last, REPLACED);
         self.take_back();
@@ -173,8 +175,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.tell(PlanEvent::Began(self.last));
     }
 
-    /// Refuses plans of other robots for this reason until a plan begins that the operator requests after this call.
-    /// Returns `true` if a plan of another robot was armed.
+    /// Refuses plans of other robots for this reason until a plan has begun that the operator requested after this
+    /// call. Returns `true` if a plan of another robot was armed.
     pub(crate) fn bar_peers(&mut self, reason: &'static str) -> bool {
         self.peers.bar(self.last, reason);
         if let Some(order) = self.compiler.as_ref().and_then(Compiler::take_back_sent) {
@@ -213,7 +215,7 @@ impl<A: EngineAlphabet> Plans<A> {
         PlanModule(Arc::clone(&self.desk))
     }
 
-    /// Records that the plan `new` has replaced `old` in the turn at `now`, and suspends `old`.
+    /// Suspends `old`, and records that the plan `new` has replaced it in the turn at `now`.
     fn begins(&mut self, old: Running<A>, new: &mut Running<A>, now: Nanos) {
         new.number = self.next_number();
         if let Some((older, _)) = self.suspended.replace((old, now)) {
@@ -240,7 +242,7 @@ impl<A: EngineAlphabet> Plans<A> {
         std::mem::replace(&mut self.driving, driving).ticket
     }
 
-    /// Replaces the active plan. If the active plan has panicked or hangs, it stays with its thread.
+    /// Replaces the active plan. If the active plan has panicked or hangs, it is left to its thread.
     fn take_over(&mut self, plan: Running<A>) {
         match &mut self.current {
             Some(flight) => {

@@ -1,4 +1,4 @@
-//! A child process in its own process group, which exchanges lines with this process.
+//! A child process in its own process group. It exchanges lines with this process.
 //!
 //! A shell in the group guards it: when this process ends for any reason, the shell kills the group.
 
@@ -16,11 +16,11 @@ use super::shown;
 
 /// Maximum length of a line, in bytes.
 const LONGEST: usize = 65_536;
-/// Time for which a child may continue after the end of its input, and again after SIGTERM.
+/// Grace period for a child process to exit after its input is closed, and again after SIGTERM is sent.
 const FAREWELL: Duration = Duration::from_millis(300);
-/// Maximum duration of ending a child.
+/// Maximum time that ending a child takes.
 pub(super) const LONGEST_FAREWELL: Duration = Duration::from_secs(2);
-/// Interval at which a wait checks whether it is over.
+/// Interval at which a waiting function checks whether the wait is over.
 const LOOK: Duration = Duration::from_millis(10);
 /// Script of the guarding shell, which kills the group when its input ends because this process has ended.
 const GUARD: &str = "trap '' HUP INT TERM; read line; kill -KILL 0";
@@ -30,7 +30,7 @@ const SHELL: &str = "/bin/sh";
 #[derive(Debug)]
 pub(super) struct Child {
     process: process::Child,
-    /// The child's input; `None` once it is closed.
+    /// Standard input of the child; `None` once it is closed.
     stdin: Option<ChildStdin>,
     stdout: ChildStdout,
     /// The guarding shell; `None` once the group is killed.
@@ -76,13 +76,14 @@ impl Child {
         Ok(child)
     }
 
-    /// Returns the next line, without its line break. Fails once `is_over` returns `true`, or after `patience`.
+    /// Returns the child's next line, without its line break. Fails once `is_over` returns `true`, or after the time
+    /// `patience`.
     pub(super) fn line(&mut self, patience: Duration, is_over: impl Fn() -> bool) -> Result<Vec<u8>, Silence> {
         self.exchange(&[], patience, is_over)
     }
 
-    /// Sends a line, and returns the answer as [`Child::line`] does. A child that has already printed something before
-    /// the line is sent is refused, because its answers would be one line ahead from then on.
+    /// Sends a line, and returns the answer as [`Child::line`] does. Refuses a child that has printed something before
+    /// the line is sent, because its answers would be one line ahead from then on.
     pub(super) fn ask(
         &mut self,
         line: &[u8],
@@ -130,7 +131,7 @@ impl Child {
         }
     }
 
-    /// Waits briefly for data to read or, if `writes` is `true`, for room to write.
+    /// Waits briefly until data can be read or, if `writes` is `true`, until the pipe accepts more data.
     fn wait(&self, writes: bool) {
         let stdin = self.stdin.as_ref().filter(|_| writes);
         let mut fds = vec![PollFd::new(&self.stdout, PollFlags::IN)];
@@ -177,7 +178,7 @@ impl Child {
         }
     }
 
-    /// Returns the reason why the child cannot continue after it has closed this stream.
+    /// Returns the reason why the child cannot continue, after it has closed the stream with this name.
     fn ended(&mut self, stream: &str) -> Silence {
         let _ = self.read();
         let half = self.unread.rsplit(|byte| *byte == b'\n').next().filter(|half| !half.is_empty());
@@ -216,7 +217,7 @@ impl Drop for Child {
     }
 }
 
-/// Returns the process group that a shell guards. The group exists until the shell has been waited for.
+/// Returns the process group that a shell guards. The group exists until this process has waited for the shell to end.
 fn group(guard: &process::Child) -> Pid {
     Pid::from_child(guard)
 }

@@ -17,7 +17,7 @@ const KEYS: [&str; 3] = ["publishes", "reads", "latency"];
 pub(super) struct Declaration {
     publishes: Vec<(String, LineForm)>,
     reads: Vec<(AttributeName, LineForm)>,
-    /// In stepped time, the time from sending a line to the child until its answer.
+    /// In stepped time, the time between sending a line to the child and its answer.
     latency: Nanos,
 }
 
@@ -49,7 +49,7 @@ impl Declaration {
         Ok(Self { publishes, reads: reads.collect::<Result<_, _>>()?, latency })
     }
 
-    /// Declares the attributes, in this order.
+    /// Declares the attributes of the child, in the order of the declaration.
     pub(super) fn declare(&self, declare: &mut Declare) {
         declare.doc("A child process.");
         for (name, form) in &self.publishes {
@@ -61,7 +61,8 @@ impl Declaration {
         declare.latency(self.latency);
     }
 
-    /// Returns the line that the child gets after the turn break at `now`: each value that it reads, or `null`.
+    /// Returns the line that is sent to the child after the turn break at `now`. It contains each value that the child
+    /// reads, or `null`.
     pub(super) fn question(&self, now: Nanos, readings: &[Option<Reading>]) -> String {
         let values = self.reads.iter().zip(readings).map(|((AttributeName { module, attribute }, form), reading)| {
             let value = reading.as_ref().map_or(Json::Null, |reading| form.write(&reading.value));

@@ -17,7 +17,7 @@ const WORDS: [(&str, AttributeKind); 6] = [
     ("numbers", AttributeKind::Numbers),
 ];
 
-/// Kinds with units; in a declaration, the unit is the word for the kind.
+/// Kinds with units. In a declaration, the unit is the word for the kind.
 const QUANTITIES: [AttributeKind; 6] = [
     AttributeKind::Length,
     AttributeKind::Speed,
@@ -27,7 +27,7 @@ const QUANTITIES: [AttributeKind; 6] = [
     AttributeKind::Time,
 ];
 
-/// Kind of an attribute's values, and the unit of their numbers in lines.
+/// Kind of an attribute's values, and the unit in which lines contain these values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LineForm {
     pub(super) kind: AttributeKind,
@@ -118,8 +118,8 @@ impl LineForm {
     }
 }
 
-/// Reads a number from a line; `None` if the value is not a number. Infinite numbers and NaN, which JSON cannot
-/// represent, are strings here.
+/// Reads a number from a line; `None` if the value is not a number. JSON cannot represent infinite numbers and NaN, so
+/// they are strings here.
 fn number(json: &Json) -> Option<f64> {
     match json.as_str() {
         Some("NaN") => Some(f64::NAN),
@@ -141,7 +141,8 @@ fn pose(numbers: &[f64]) -> Option<Pose> {
     Some(Pose { x: Meters(*x), y: Meters(*y), theta: Radians(*theta) })
 }
 
-/// Reads a line that is a JSON object. Accepts `NaN` and `Infinity`, which are not JSON, but which Python prints.
+/// Parses a line that contains a JSON object. Also accepts `NaN` and `Infinity`, which Python prints although they are
+/// not JSON.
 ///
 /// # Errors
 /// Fails with a sentence if the line is not a JSON object.
@@ -166,7 +167,7 @@ pub(super) fn object(line: &[u8]) -> Result<Map<String, Json>, String> {
     }
 }
 
-/// Puts quotes around the words for numbers that are not finite, except inside strings.
+/// Puts quotes around `NaN` and infinite numbers, except inside strings.
 fn quoted(text: &str) -> String {
     const WORDS: [&str; 3] = ["-Infinity", "Infinity", "NaN"];
     let (mut result, mut rest, mut is_text) = (String::new(), text, false);

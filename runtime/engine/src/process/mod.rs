@@ -1,8 +1,8 @@
-//! `/lib/process`: a child process in any language as a background module. It exchanges lines of JSON on its
+//! `/lib/process`: a child process, written in any language, as a background module. It exchanges lines of JSON on its
 //! standard input and output (docs/src/own_module.md).
 //!
-//! The child's first line declares its attributes. At each turn break at which it waits, the child gets a line with the
-//! values that it reads, and answers with a line of values, which are published at the next turn break.
+//! The child's first line declares its attributes. At each turn break for which it waits, the child gets a line with
+//! the values that it reads. It answers with a line of values, which are published at the next turn break.
 
 mod child;
 mod declaration;
@@ -20,9 +20,9 @@ use declaration::Declaration;
 
 /// Maximum time from the start of a child to its declaration.
 const DECLARATION: Duration = Duration::from_secs(10);
-/// Maximum time from sending a line to the child until its answer.
+/// Maximum time between sending a line to the child and its answer.
 const ANSWER: Duration = Duration::from_secs(10);
-/// Maximum number of characters of a child's line that are shown in a message.
+/// Maximum number of characters of a child's line that a message shows.
 const SHOWN: usize = 60;
 
 /// A background module whose values a child process computes.
@@ -33,7 +33,7 @@ struct Process {
 
 impl<Y> Candidate<Y> {
     /// Starts a child process with the command line `command`, which `/bin/sh` interprets, and returns a background
-    /// module with this name for it. The child ends with the module. It has ten seconds to send its declaration.
+    /// module with this name for it. The child ends when the module ends. It has ten seconds to send its declaration.
     ///
     /// # Errors
     /// Fails if the name is invalid, if the child cannot be started, if its first line is not a declaration, or if
@@ -99,7 +99,7 @@ fn converse(child: &mut Child, declaration: &Declaration, exchange: &mut Exchang
     Ok(())
 }
 
-/// Returns a line of a child as it is shown in messages.
+/// Returns a child's line in the form in which messages show it.
 fn shown(line: &[u8]) -> String {
     let text = String::from_utf8_lossy(line);
     let mut start: String = text.chars().take(SHOWN).collect();

@@ -10,7 +10,7 @@ use crate::board::{Board, Post};
 /// Changes that the record of a run needs.
 #[derive(Debug, Default)]
 pub(crate) struct History {
-    /// Attributes that the record contains, by number; `None` for a removed attribute.
+    /// Attributes that the record contains, by their number in the record; `None` for a removed attribute.
     known: Vec<Option<RecordedAttribute>>,
     /// Changes of the current turn.
     changes: Vec<RecordedChange>,
@@ -21,13 +21,13 @@ pub(crate) struct History {
 struct RecordedAttribute {
     name: AttributeName,
     kind: AttributeKind,
-    /// Time and bits of the last recorded value; `None` before the first.
+    /// Time and bits of the value that was recorded last; `None` before the first.
     reading: Option<(Nanos, u64)>,
 }
 
 impl History {
-    /// Begins a turn with the changes of plans since the last turn. `reads` contains the attributes that plans and
-    /// safety rules read now or may read in later turns.
+    /// Begins a turn, and records the changes of plans since the last turn. `reads` contains the attributes that plans
+    /// and safety rules read now or may read in later turns.
     pub(crate) fn begin(
         &mut self,
         plans: Vec<RecordedChange>,
@@ -54,7 +54,7 @@ impl History {
         self.changes.push(change);
     }
 
-    /// Records the states of other robots as known in the current turn.
+    /// Records the states of other robots that are known in the current turn.
     pub(crate) fn heard(&mut self, links: &Links) {
         let peers = links.peers().map(|Peer { name, rounds, state }| RecordedChange::Peer {
             name: (*name).to_owned(),
@@ -74,7 +74,7 @@ impl History {
         std::mem::take(&mut self.changes)
     }
 
-    /// Records which attributes were removed from the board, including attributes that were added again afterwards.
+    /// Records which attributes were removed from the board, even if they were added again afterwards.
     fn forget(&mut self, board: &Board) {
         for (number, known) in (0..).zip(&mut self.known) {
             let has_gone = |known: &mut RecordedAttribute| {
@@ -89,7 +89,7 @@ impl History {
         }
     }
 
-    /// Records an attribute if it or its value is new.
+    /// Records an attribute if the attribute or its value is new.
     fn see(&mut self, post: &Post) {
         let is_same = |known: &Option<RecordedAttribute>| known.as_ref().is_some_and(|known| known.name == post.name);
         let number = self.known.iter().position(is_same).unwrap_or_else(|| {

@@ -1,5 +1,5 @@
-//! Repeats the changes of a recorded run in an engine. The board contains the values that modules published, although
-//! the modules themselves are not loaded.
+//! Repeats the changes of a recorded run in an engine. The board contains the values that modules published in that
+//! run, but the modules themselves are not loaded.
 
 use mdle_record::RecordedChange;
 use mdle_runtime::{Links, Peer, PeerState};
@@ -10,9 +10,9 @@ use crate::board::Board;
 /// State of a replayed run.
 #[derive(Debug, Default)]
 pub(crate) struct Repeats {
-    /// Attributes of the record, by number.
+    /// Attributes in the record, by their number.
     attributes: Vec<(AttributeName, AttributeKind)>,
-    /// Name, rounds and known state of each other robot in the current turn.
+    /// Name, number of rounds, and known state of each other robot in the current turn.
     peers: Vec<(String, u64, Option<PeerState>)>,
     progress: PlanProgress,
 }
@@ -27,7 +27,7 @@ enum PlanProgress {
     Skipped,
     /// A thread started the turn, but did not finish it in time.
     Late,
-    /// The plan was still busy with an earlier turn.
+    /// The plan was still busy with an earlier turn, so it made no turn.
     Away,
     /// The plan finished an earlier turn.
     Back,

@@ -22,7 +22,7 @@ pub struct Conditions<A: runtime::Alphabet> {
     warnings: Vec<Diagnostic>,
 }
 
-/// Conditions of guards during a run, which are evaluated in each turn.
+/// Conditions of guards, which are evaluated in each turn of a run.
 pub struct WatchedConditions<A: runtime::Alphabet> {
     loaded: Vec<Arc<Loaded<A>>>,
     /// For each condition, a plan that never leaves its first atom; empty before the first output.
@@ -30,7 +30,7 @@ pub struct WatchedConditions<A: runtime::Alphabet> {
     fired: Vec<bool>,
 }
 
-/// Reason why a guard's condition cannot be used.
+/// Reason why the condition of a guard cannot be used.
 #[derive(Debug)]
 pub enum GuardError {
     /// The condition has errors; contains diagnostics with spans in the sources.
@@ -92,7 +92,7 @@ impl<A: runtime::Alphabet> Conditions<A> {
         &self.warnings
     }
 
-    /// Returns the conditions for a run that has no output yet.
+    /// Returns the conditions for a new run, which has no output yet.
     #[must_use]
     pub fn watch(&self) -> WatchedConditions<A> {
         WatchedConditions { loaded: self.loaded.clone(), machines: Vec::new(), fired: Vec::new() }
@@ -118,8 +118,8 @@ impl<A: runtime::Alphabet> WatchedConditions<A> {
     }
 }
 
-/// Compiles a condition in the safety file `file` as the interrupt of a plan that only stops the robot; returns the
-/// condition and its warnings.
+/// Compiles a condition of the safety file `file` as the interrupt of a plan that only stops the robot; returns the
+/// condition and the warnings about it.
 fn compiled<A: runtime::Alphabet>(
     file: SourceId,
     condition: &ConditionText,
@@ -150,10 +150,10 @@ fn compiled<A: runtime::Alphabet>(
     Ok((Arc::new(loaded), warnings))
 }
 
-/// Text that precedes a condition in the plan that is generated for it.
+/// Text before the condition in the plan that is generated for a condition.
 const BEFORE: &str = "{ Guard (";
 
-/// A condition, with the plan that is generated for it and the safety file that contains it.
+/// A condition, the plan that is generated for it, and the safety file that contains it.
 struct PlacedCondition<'c> {
     file: SourceId,
     plan: SourceId,

@@ -1,5 +1,5 @@
-//! The envelope applies the safety rules and decides which input is sent to a robot. It reads no clock and no file, so
-//! its decisions are the same when a run is replayed.
+//! The envelope, which applies the safety rules and decides which input is sent to a robot. It reads no clock and no
+//! file, so it decides in the same way when a run is replayed.
 
 use std::time::Duration;
 
@@ -9,9 +9,9 @@ use mdle_runtime::{MetersPerSecond, Nanos, RadiansPerSecond, Twist};
 
 use super::{Fence, Limits, Measure, RuleId, Rules, Then};
 
-/// Speed, in metres per second, below which a robot that a fence has slowed down counts as stopped: 1 cm/s.
+/// Speed, in metres per second, below which a robot that was slowed down by a fence is treated as stopped.
 const CREEP: f64 = 0.01;
-/// Number of turn rates that are tried at a fence, from the plan's turn rate to the robot's current turn rate.
+/// Number of turn rates that are tried at a fence, in steps from the plan's turn rate to the robot's current turn rate.
 const RATES: u32 = 4;
 
 /// Safety rules that are applied between a plan and a robot, with their state in a run.
@@ -28,18 +28,18 @@ pub struct Envelope {
     at: Option<Nanos>,
     /// Number of consecutive late turns.
     late: u64,
-    /// Rules that have diverted the run to another plan, and are off since then.
+    /// Rules that have replaced the plan by another plan, and have been switched off since then.
     spent: Vec<RuleId>,
     /// Verdict of the last turn, and the rule that caused it; `None` if no rule changed the input.
     verdict: Option<(Verdict, RuleId)>,
     /// Quantity that was limited in the last turn; `None` if no quantity was limited.
     limited: Option<LimitedQuantity>,
-    /// Number of turns in which each rule changed the input, in the order of `Rules::ids`.
+    /// Number of turns in which each rule has changed the input, in the order of `Rules::ids`.
     counts: Vec<(RuleId, u64)>,
 }
 
 impl Envelope {
-    /// Returns an envelope with these rules for a run with this period.
+    /// Creates an envelope with these rules for a run with this period.
     #[must_use]
     pub fn new(rules: Rules, period: Duration) -> Self {
         let mut envelope = Self {
@@ -58,8 +58,8 @@ impl Envelope {
         envelope
     }
 
-    /// Returns the input to send instead of `asked` in the turn with output `y` at time `now`. `fired` contains `true`
-    /// for each guard whose condition is true for `y`.
+    /// Returns the input to send to the robot instead of `asked`, in the turn with output `y` at time `now`. `fired`
+    /// contains an entry for each guard: `true` if the condition of the guard is true for `y`.
     pub fn filter<Y>(&mut self, asked: Twist, y: &Y, now: Nanos, fired: &[bool]) -> Twist
     where
         Y: Odometry + Bumpers + SonarRing + DiffDrive,
@@ -98,8 +98,8 @@ impl Envelope {
         self.at = Some(now);
     }
 
-    /// Returns the strictest consequence of all rules except limits and fences, with the rule that demands it; the
-    /// first of several equally strict ones. Returns `None` if no rule demands a consequence.
+    /// Returns the strictest consequence that any rule except limits and fences demands, with the rule. Among equally
+    /// strict consequences, the first one is returned. Returns `None` if no rule demands a consequence.
     fn demand<Y>(&self, asked: Twist, y: &Y, now: Nanos, fired: &[bool]) -> Option<(Then, RuleId)>
     where
         Y: Bumpers + SonarRing,
@@ -119,8 +119,8 @@ impl Envelope {
         demands.reduce(|strictest, other| if other.0 > strictest.0 { other } else { strictest })
     }
 
-    /// Returns the input within limits and fences, with the verdict and the last rule that changed the input; `None` if
-    /// no rule changed it.
+    /// Applies limits and fences to an input. Returns the resulting input, with the verdict and the last rule that
+    /// changed the input; `None` if no rule changed it.
     fn within_limits<Y: Odometry + DiffDrive>(&mut self, asked: Twist, y: &Y) -> (Twist, Option<(Verdict, RuleId)>) {
         let limits = self.rules.limits;
         let mut input = Limited { v: asked.v.0, omega: asked.omega.0, by: None };
@@ -146,9 +146,9 @@ impl Envelope {
         (Twist { v: MetersPerSecond(input.v), omega: RadiansPerSecond(input.omega) }, verdict)
     }
 
-    /// Returns a turn rate at which the robot can brake before a fence: the plan's turn rate, or a turn rate between it
-    /// and the robot's current turn rate. A robot that drives along a fence cannot first turn towards the fence and
-    /// then brake, and wheels cannot brake while they change the turn rate as fast as possible.
+    /// Returns a turn rate with which the robot can brake before a fence: the plan's turn rate, or a value between the
+    /// plan's and the robot's current turn rate. A robot that drives along a fence cannot first turn towards the fence
+    /// and then brake, and wheels cannot brake while they change the turn rate as fast as possible.
     fn turn_rate_at<Y: Odometry + DiffDrive>(&self, fence: &Fence, asked: f64, y: &Y) -> f64 {
         let (sent, Twist { v, omega }) = (self.last.v.0, y.velocity());
         let rolls = if v.0.abs() > sent.abs() { v.0 } else { sent };
@@ -178,14 +178,14 @@ impl Envelope {
         &self.rules
     }
 
-    /// Returns the rules for writing; a change applies from the next turn on. The numbers of guards and fences must not
-    /// change.
+    /// Returns the rules so that they can be changed; changes apply from the next turn on. The numbers of guards and
+    /// fences must not change.
     pub fn rules_mut(&mut self) -> &mut Rules {
         &mut self.rules
     }
 
-    /// Resets the rules: limits have their values of the beginning of the run, counts are 0, and rules that have
-    /// replaced a plan apply again. Returns the names of these rules.
+    /// Resets the rules: limits have their values from the beginning of the run again, counts are 0, and rules that
+    /// have replaced a plan are switched on again. Returns the names of the rules that were switched on.
     pub fn reset(&mut self) -> Vec<String> {
         self.rules.limits = self.first_limits;
         self.counts.iter_mut().for_each(|(_, count)| *count = 0);
@@ -232,7 +232,7 @@ impl Limited {
     }
 }
 
-/// Returns the quantity `measure` in the input `asked`, which the plan requested, and in the limited input.
+/// Returns the quantity `measure` in two inputs: in `asked`, which the plan requested, and in the limited input.
 fn of_measure(measure: Measure, asked: Twist, input: &Limited) -> LimitedQuantity {
     let (asked, sent) = match measure {
         Measure::TurnRate => (asked.omega.0, input.omega),

@@ -5,9 +5,9 @@ use std::fmt;
 /// Reason why a text is not a valid safety file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RulesError {
-    /// Line of the file, from 1.
+    /// Line of the file, counted from 1.
     pub line: usize,
-    /// Sentence with what to write instead.
+    /// Sentence that says what to write instead.
     pub message: String,
 }
 

@@ -1,9 +1,9 @@
 //! A fence: a polygon that the centre of the robot must not leave. A fence limits only the speed.
 //!
 //! The input of a turn acts for one period, and its effect is measured only after this period. Therefore, the distance
-//! driven in two periods at the new speed plus the braking distance must be less than the distance to the fence:
-//! `v·2T + v²/2a <= d`. A rule that stopped the robot at a fixed distance would release the robot when it has stopped,
-//! and then stop it again, turn by turn.
+//! driven in two periods at the new speed plus the braking distance must not exceed the distance to the fence: `v·2T +
+//! v²/2a <= d`. A rule that stopped the robot at a fixed distance would release the robot as soon as it has stopped,
+//! and then stop it again, turn after turn.
 
 use mdle_runtime::Pose;
 
@@ -14,7 +14,7 @@ use super::plane::{Edge, Point, between, cross, cross_over, direction, dot, hit,
 pub struct Fence {
     /// Name of the fence in reports: `fence`, or `fence 2`.
     pub name: String,
-    /// Corners in order, as x and y in metres: at least three, enclosing an area.
+    /// Corners in order, each as x and y in metres. There are at least three corners, and they enclose an area.
     pub corners: Vec<[f64; 2]>,
     /// Distance from the edges at which the robot has to stop, in metres; at least 0.
     pub margin: f64,
@@ -24,10 +24,10 @@ pub struct Fence {
 
 impl Fence {
     /// Returns the maximum speed, in metres per second, of a robot at this pose with the speed `v` and the turn rate
-    /// `omega`; `period` is in seconds. If `v` is negative, the robot drives backwards.
+    /// `omega`; `period` is in seconds. A negative `v` means that the robot drives backwards.
     ///
-    /// The robot continues to turn while it brakes, so all directions that it can have until it stops are taken into
-    /// account.
+    /// The robot continues to turn while it brakes, so the result is valid for all directions that the robot can have
+    /// until it stops.
     pub(super) fn fastest(&self, pose: &Pose, v: f64, omega: f64, period: f64) -> f64 {
         let here = [pose.x.0, pose.y.0];
         let backwards = if v < 0.0 { core::f64::consts::PI } else { 0.0 };
@@ -39,9 +39,9 @@ impl Fence {
         self.deceleration * (libm::sqrt(late * late + 2.0 * room / self.deceleration) - late)
     }
 
-    /// Returns the distance that a robot outside the fence may drive: into the fence, and up to the margin of the edge
-    /// at which it would leave the fence again. Returns 0 unless the robot approaches the fence in all directions from
-    /// `heading` to `heading + turned`.
+    /// Returns the distance that a robot outside the fence may drive: it may enter the fence, and drive up to the
+    /// margin of the edge at which it would leave the fence again. Returns 0 unless the robot approaches the fence in
+    /// all directions from `heading` to `heading + turned`.
     fn way_in(&self, here: Point, heading: f64, turned: f64) -> f64 {
         let to_fence = self.edges().map(|edge| between(here, nearest(here, edge)));
         let [x, y] = to_fence
@@ -57,8 +57,8 @@ impl Fence {
         if exit.is_finite() { (exit - self.margin).max(0.0) } else { 0.0 }
     }
 
-    /// Returns the distance that the robot may drive before it comes within the margin of an edge, in the directions
-    /// from `heading` to `heading + turned`.
+    /// Returns the distance that the robot may drive in any direction from `heading` to `heading + turned` before it
+    /// comes within the margin of an edge.
     fn room(&self, here: Point, heading: f64, turned: f64) -> f64 {
         let (from, to) = if turned < 0.0 { (heading + turned, heading) } else { (heading, heading + turned) };
         let (first, last) = (direction(from), direction(to));

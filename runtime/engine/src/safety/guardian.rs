@@ -1,4 +1,4 @@
-//! The guardian, the supervisor of a run with safety rules.
+//! The guardian: the supervisor of a run with safety rules.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use mdle_runtime::{Alphabet, Nanos, Plan, Twist};
 
 use super::{Conditions, Envelope, Limits, Measure, Rules, WatchedConditions};
 
-/// Supervisor of one run: an envelope with the conditions of its guards.
+/// Supervisor of one run, which consists of an envelope and the conditions of the guards.
 #[derive(Debug)]
 pub struct Guardian<A: Alphabet> {
     envelope: Envelope,
@@ -23,7 +23,7 @@ pub struct Guardian<A: Alphabet> {
 }
 
 impl<A: Alphabet> Guardian<A> {
-    /// Returns the guardian of a run with this period; `conditions` are the conditions of the guards in `rules`.
+    /// Creates the guardian of a run with this period; `conditions` are the conditions of the guards in `rules`.
     #[must_use]
     pub fn new(rules: Rules, conditions: &Conditions<A>, period: Duration) -> Self {
         let (envelope, conditions) = (Envelope::new(rules, period), conditions.watch());
@@ -36,7 +36,7 @@ impl<A: Alphabet> Guardian<A> {
         &self.envelope
     }
 
-    /// Returns the envelope for writing; its rules can be changed.
+    /// Returns the envelope, so that its rules can be changed.
     pub fn envelope_mut(&mut self) -> &mut Envelope {
         &mut self.envelope
     }
@@ -54,8 +54,8 @@ impl<A: Alphabet> Guardian<A> {
         self.envelope.reset()
     }
 
-    /// Returns a change if the rules were reset since the last call, and a change for each limit that then differs from
-    /// `recorded`; updates `recorded`.
+    /// Returns the changes since the last call: a reset of the rules, and each limit that then differs from `recorded`.
+    /// Updates `recorded`.
     pub(crate) fn changes_since(&mut self, recorded: &mut Limits) -> Vec<RecordedChange> {
         let mut limits = self.envelope.rules().limits;
         let mut changes = Vec::new();

@@ -126,7 +126,7 @@ impl<'t, 'i> SafetyReader<'t, 'i> {
         Ok(())
     }
 
-    /// Reads the consequence of a rule.
+    /// Reads the consequence of a rule; `words` are the permitted words.
     fn then(&mut self, section: Section<'t, 'i>, words: &[&str]) -> Result<Then, RulesError> {
         let value = section.needed("then", "\"hold\"")?;
         let text = section.text("then", value, "\"hold\"")?;

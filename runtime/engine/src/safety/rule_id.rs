@@ -1,11 +1,11 @@
-//! Single rules of a safety file, with their names and texts.
+//! Names and texts of the single rules in a safety file.
 
 use super::{Rules, Then};
 
 /// A safety rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RuleId {
-    /// The built-in rule that an input consists of finite numbers.
+    /// The built-in rule that all numbers of an input must be finite.
     Finite,
     /// The rule `output` of `[stale]`.
     Stale,
@@ -15,7 +15,7 @@ pub enum RuleId {
     Overrun,
     /// The rule `[contact]`.
     Contact,
-    /// The guard with this number, from 0.
+    /// The guard with this index in the safety file.
     Guard(usize),
     /// The rule `speed` of `[limits]`.
     Speed,
@@ -23,7 +23,7 @@ pub enum RuleId {
     TurnRate,
     /// The rule `acceleration` of `[limits]`.
     Acceleration,
-    /// The fence with this number, from 0.
+    /// The fence with this index in the safety file.
     Fence(usize),
 }
 
@@ -45,7 +45,7 @@ impl Rules {
         }
     }
 
-    /// Returns the consequence of a rule, in the words of a safety file; `None` for a rule that limits inputs.
+    /// Returns the consequence of a rule, in the words of a safety file; `None` for a rule that only limits inputs.
     #[must_use]
     pub fn then(&self, id: RuleId) -> Option<&str> {
         let then = match id {
@@ -64,7 +64,7 @@ impl Rules {
         })
     }
 
-    /// Returns the condition of a guard, in the plan language; `None` for another rule.
+    /// Returns the condition of a guard, in the plan language; `None` for any other rule.
     #[must_use]
     pub fn when(&self, id: RuleId) -> Option<&str> {
         let RuleId::Guard(number) = id else { return None };

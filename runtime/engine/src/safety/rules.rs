@@ -16,26 +16,26 @@ pub struct Rules {
     pub fences: Vec<Fence>,
     /// Consequence of a bumper contact; `None` without this rule.
     pub contact: Option<Then>,
-    /// Maximum age of the measurements in an output, and the consequence if they are older (stale); `None` without this
-    /// rule.
+    /// Maximum age of the measurements in an output, and the consequence for older (stale) measurements; `None` without
+    /// this rule.
     pub stale: Option<(Nanos, Then)>,
-    /// Maximum age of a module's value that the plan or a guard reads, and the consequence if the value is older;
-    /// `None` without this rule.
+    /// Maximum age of a module's value that the plan or a guard reads, and the consequence for an older value; `None`
+    /// without this rule.
     pub stale_module: Option<(Nanos, Then)>,
-    /// Number of consecutive late turns that has a consequence, and the consequence; `None` without this rule.
+    /// Number of consecutive late turns that triggers the rule, and the consequence; `None` without this rule.
     pub overrun: Option<(u64, Then)>,
     /// Guards in the order of the file; their conditions are written in the plan language.
     pub guards: Vec<Guard>,
-    /// Plans to which rules divert, without duplicates.
+    /// Plans that rules start in place of the running plan, without duplicates.
     pub plans: Vec<PlanEntry>,
 }
 
-/// A plan to which rules divert.
+/// A plan that a rule starts in place of the running plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PlanEntry {
     /// File of the plan, as written in the safety file.
     pub file: String,
-    /// Line of the safety file that first names the plan, from 1.
+    /// Line of the safety file, counted from 1, that first names the plan.
     pub line: usize,
 }
 
@@ -67,18 +67,19 @@ pub struct Guard {
     pub then: Then,
 }
 
-/// Text of a condition, and its place in the safety file.
+/// Text of a condition, and its position in the safety file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ConditionText {
     /// Text in the plan language.
     pub text: String,
-    /// Line of the text, from 1.
+    /// Line of the text, counted from 1.
     pub line: usize,
-    /// Byte range of the text in the safety file; if the text is written with escapes, the range of the whole value.
+    /// Byte range of the text in the safety file. If the text contains escape sequences, this is the range of the whole
+    /// value.
     pub bytes: Range<usize>,
 }
 
-/// Consequence of a rule, in order of strictness, the weakest first.
+/// Consequence of a rule. The order is the order of strictness; the weakest consequence comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Then {
     /// The robot gets no forward speed, and may drive backwards.
@@ -91,7 +92,7 @@ pub enum Then {
     End,
 }
 
-/// Quantities of the rules that can be changed by name while a plan runs.
+/// Quantities of safety rules that can be changed by name while a plan runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
     /// Maximum speed: [`Limits::speed`].
@@ -144,7 +145,7 @@ impl Measure {
         }
     }
 
-    /// Returns the limit of this quantity for writing.
+    /// Returns the limit of this quantity, so that it can be changed.
     #[must_use]
     pub fn of(self, limits: &mut Limits) -> &mut f64 {
         match self {

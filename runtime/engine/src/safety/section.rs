@@ -34,7 +34,7 @@ impl<'t, 'i> Section<'t, 'i> {
         Self { text, name: "", table, place: 0 }
     }
 
-    /// Returns the section itself if every key is one of `keys`, and an error otherwise.
+    /// Returns the section if every key is one of `keys`; fails otherwise.
     pub(super) fn only(self, keys: &[&str]) -> Result<Self, RulesError> {
         for (key, _) in self.entries() {
             let name = key.get_ref();
@@ -87,7 +87,7 @@ impl<'t, 'i> Section<'t, 'i> {
         found.as_str().ok_or_else(|| self.error(value, message()))
     }
 
-    /// Returns a quantity above 0, or at least 0 if `may_be_none`, in the unit of [`Quantity`].
+    /// Returns a quantity in the unit of [`Quantity`]. It must be above 0, or at least 0 if `may_be_none` is `true`.
     pub(super) fn quantity(
         self,
         key: &str,
@@ -121,14 +121,14 @@ impl<'t, 'i> Section<'t, 'i> {
         }
     }
 
-    /// Returns a time above 0.
+    /// Returns a time, which must be above 0.
     pub(super) fn time(self, key: &str, value: &'t TomlValue<'i>) -> Result<Duration, RulesError> {
         let seconds = self.quantity(key, value, (Quantity::Time, "s"), false)?;
         let time = Duration::try_from_secs_f64(seconds).ok().filter(|time| !time.is_zero());
         time.ok_or_else(|| self.error(value, format!("`{key}` has to be a time from 1ns to 100 years")))
     }
 
-    /// Returns an integer that is at least 1.
+    /// Returns an integer, which must be at least 1.
     pub(super) fn count(self, key: &str, value: &'t TomlValue<'i>) -> Result<u64, RulesError> {
         let found = value.get_ref();
         let number = found.as_integer().and_then(|number| u64::from_str_radix(number.as_str(), number.radix()).ok());
@@ -145,8 +145,8 @@ impl<'t, 'i> Section<'t, 'i> {
         RulesError { line: line(self.text, place.span().start), message }
     }
 
-    /// Returns the line of a value, from 1, and the byte range of its text; if the text is written with escapes, the
-    /// range of the whole value.
+    /// Returns the line of a value, counted from 1, and the byte range of its text. If the text contains escape
+    /// sequences, this is the range of the whole value.
     pub(super) fn place(self, span: &Range<usize>, text: &str) -> (usize, Range<usize>) {
         let start = self.text.get(span.clone()).and_then(|value| value.find(text)).map(|before| span.start + before);
         let bytes = start.map_or_else(|| span.clone(), |start| start..start + text.len());
@@ -154,7 +154,7 @@ impl<'t, 'i> Section<'t, 'i> {
     }
 }
 
-/// Returns the line number of a byte offset, from 1.
+/// Returns the line number of a byte offset, counted from 1.
 pub(super) fn line(text: &str, place: usize) -> usize {
     text.bytes().take(place).filter(|byte| *byte == b'\n').count() + 1
 }
@@ -171,7 +171,7 @@ pub(super) fn kind(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-/// Returns a number as it is written in the file; for any other value, returns its type.
+/// Returns a number in the form in which the file contains it; for any other value, returns its type.
 fn shown(value: &DeValue<'_>) -> String {
     match value {
         DeValue::Integer(number) => number.to_string(),

@@ -6,7 +6,7 @@ use super::plane::{between, nearest};
 use super::{Fence, Rules};
 
 impl Rules {
-    /// Returns a sentence for each fence that holds a robot at its start, given the start pose by odometry.
+    /// Returns a sentence for each fence that stops a robot at its start; `pose` is the start pose by odometry.
     #[must_use]
     pub fn held_at_start(&self, pose: &Pose) -> Vec<String> {
         self.fences.iter().filter_map(|fence| fence.held_at_start(pose)).collect()
@@ -14,7 +14,7 @@ impl Rules {
 }
 
 impl Fence {
-    /// Returns a sentence if the fence holds a robot that starts at this pose; `None` otherwise.
+    /// Returns a sentence if the fence stops a robot that starts at this pose; `None` otherwise.
     fn held_at_start(&self, pose: &Pose) -> Option<String> {
         let here @ [x, y] = [pose.x.0, pose.y.0];
         let Self { name, margin, .. } = self;

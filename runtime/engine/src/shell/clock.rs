@@ -1,4 +1,4 @@
-//! The clock of a session: pauses and resumes the run, makes single turns, and sets the pace of stepped time.
+//! The clock of a session: pauses and resumes the run, runs single turns, and sets the pace of stepped time.
 
 use std::time::Duration;
 
@@ -19,16 +19,16 @@ pub(super) struct SessionClock {
     period: Duration,
     /// Requested pace of stepped time; `None` in real time.
     pace: Option<Pace>,
-    /// Requested pace that the run has not adopted yet; `None` if there is none.
+    /// Requested pace that the run has not adopted yet; `None` if the run has adopted the last requested pace.
     pub(super) ordered: Option<Pace>,
     pub(super) is_paused: bool,
-    /// Number of turns of the run at which the clock is paused again, and the reply to send then; `None` if no request
-    /// for single turns is pending.
+    /// Number of turns of the run after which the clock is paused again, and the reply to send then; `None` if no
+    /// request for single turns is pending.
     steps: Option<(u64, Reply)>,
-    /// Requests that wait for a time or for the end of the plan: the time, `true` if the clock is paused then, and the
-    /// reply.
+    /// Requests that wait for a time or for the end of the plan. Each contains the time, `true` if the clock is to be
+    /// paused then, and the reply.
     waits: Vec<(Nanos, bool, Reply)>,
-    /// Number of turns and time of the last turn, as shown in answers.
+    /// Number of turns, and time of the last turn, as answers show them.
     now: String,
 }
 
@@ -42,7 +42,7 @@ impl SessionClock {
         Self { period, pace, ordered: None, is_paused, steps: None, waits: Vec::new(), now: String::new() }
     }
 
-    /// Answers requests whose turn or time has come.
+    /// Answers requests that have waited for this turn or time.
     pub(super) fn made<B: Pilot>(&mut self, moment: &Break<'_, B>) {
         let now = said(moment);
         if let Some((_, reply)) = self.steps.take_if(|(turns, _)| moment.turns >= *turns || moment.is_over) {
@@ -60,7 +60,7 @@ impl SessionClock {
         }
     }
 
-    /// Saves the last state of a run that ends before its plan.
+    /// Saves the last state of a run that has ended before its plan.
     pub(super) fn at_end<B: Pilot>(&mut self, moment: &Break<'_, B>) {
         self.now = said(moment);
     }
@@ -139,7 +139,7 @@ fn said<B: Pilot>(moment: &Break<'_, B>) -> String {
     format!("{turns} {word}, {t}{over}")
 }
 
-/// Returns the values about the lateness of turns; a simulated robot has none.
+/// Returns the values that describe how late turns begin; a simulated robot has no such values.
 fn late(lateness: Option<Lateness>) -> [Option<Value>; 4] {
     let Some(Lateness { p50, p99, max, missed }) = lateness else { return [const { None }; 4] };
     let [p50, p99, max] = [p50, p99, max].map(|time| Some(Value::milliseconds(time)));

@@ -17,9 +17,9 @@ pub(super) enum ShellCommand {
     Help(Option<String>),
     /// Print a command with its arguments and its description.
     Explain((&'static str, &'static str, &'static str)),
-    /// Let the stored plan with this name take over at the moment that the arguments name.
+    /// Let the stored plan with this name take over. The arguments name the moment.
     Swap(String, Vec<String>),
-    /// End the session, as at the end of the commands.
+    /// End the session, as the end of the command file does.
     Quit,
 }
 

@@ -26,7 +26,8 @@ pub struct Conversation {
 }
 
 /// Carries out commands until there are no more, the session ends, or an error ends it; then also ends the run. Returns
-/// `true` if every command was carried out, or if the run never begins; the reason for this is reported elsewhere.
+/// `true` if every command was carried out. Also returns `true` if the run never begins, because the reason is reported
+/// elsewhere.
 pub fn converse(
     hub: &Hub,
     conversation: &Conversation,
@@ -95,7 +96,7 @@ struct Asker<'a> {
 }
 
 impl Asker<'_> {
-    /// Makes a request to the hub, and prints reports while it waits for the answer.
+    /// Sends a request to the hub, and prints reports while it waits for the answer.
     fn ask(&mut self, path: &str, operation: Operation) -> Answer {
         let request = Request { path: path.to_owned(), operation, role: self.conversation.role };
         // Creating a module may take long: a user at a terminal can type the next command in the meantime.

@@ -22,10 +22,10 @@ pub trait Lines {
     fn next(&mut self, here: &str) -> Typed;
 }
 
-/// A line, or the reason why there is none.
+/// A line, or the reason why there is no line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Typed {
-    /// A line with its number, from 1.
+    /// A line with its number, counted from 1.
     Line(usize, String),
     /// A line that cannot be used: its number, and a sentence with the reason.
     Unusable(usize, String),
@@ -33,7 +33,7 @@ pub enum Typed {
     End,
 }
 
-/// Lines of a file or a pipe. A line that ends with `\` continues on the next line.
+/// Lines from a file or a pipe. A line that ends with `\` continues on the next line.
 #[derive(Debug)]
 pub struct FileLines<R> {
     from: R,
@@ -41,7 +41,7 @@ pub struct FileLines<R> {
 }
 
 impl<R: BufRead> FileLines<R> {
-    /// Returns the lines of a reader.
+    /// Creates a source of the lines of a reader.
     pub fn new(from: R) -> Self {
         Self { from, number: 0 }
     }

@@ -1,4 +1,4 @@
-//! Other robots in the tree: `/link/NAME` for each robot to which plans can be sent.
+//! Other robots in the tree: `/link/NAME` represents a robot to which plans can be sent.
 
 use mdle_host::Break;
 

@@ -1,4 +1,4 @@
-//! Modules in the tree: `/usr/NAME` for each loaded module, and `/lib/NAME` for each module that can be loaded (paper,
+//! Modules in the tree: `/usr/NAME` represents a loaded module, and `/lib/NAME` a module that can be loaded (paper,
 //! III-H).
 
 use std::time::Duration;
@@ -14,7 +14,7 @@ use crate::module::{About, PLAN, Refusal};
 use crate::plans::EngineAlphabet;
 use crate::tree::{Answer, Change, Node, Reply, Role, Served, Value, ValueKind, read};
 
-/// Reading of the time that a module takes.
+/// Node of the tree that shows how much time the turns of a module take.
 pub(super) const COST: (&str, Node) = (
     ".cost",
     Node::reading(
@@ -23,7 +23,7 @@ pub(super) const COST: (&str, Node) = (
     ),
 );
 
-/// Methods and readings that every module has, in the order of their values.
+/// Methods and readable attributes that every module has, in the order of their values.
 const OWN: [(&str, Node); 9] = [
     (
         ".state",
@@ -48,14 +48,14 @@ const OWN: [(&str, Node); 9] = [
 /// Name of the node in `/lib` that loads child processes. A module of the library with this name takes precedence.
 const PROCESS: &str = "process";
 
-/// Modules, with the requests to load modules that are not answered yet.
+/// Modules in the tree, and the requests to load modules that have not been answered yet.
 #[derive(Debug, Default)]
 pub(super) struct ModulesPart {
     waiting: Vec<(u32, Reply)>,
 }
 
 impl ModulesPart {
-    /// Returns `true` if a request is not answered yet.
+    /// Returns `true` if a request has not been answered yet.
     pub(super) fn waits(&self) -> bool {
         !self.waiting.is_empty()
     }
@@ -202,7 +202,7 @@ fn state_text(state: ModuleState) -> &'static str {
     }
 }
 
-/// Returns the kind of an attribute in the tree; a quantity has the unit that the attribute's description names.
+/// Returns the kind that an attribute has in the tree; a quantity has the unit that the attribute's description names.
 fn kind(about: &About) -> ValueKind {
     let quantity = about.unit.and_then(|unit| Some((Quantity::of_unit(unit.name)?.0, unit.name)));
     match (about.kind, quantity) {

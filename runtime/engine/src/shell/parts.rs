@@ -88,7 +88,8 @@ where
 /// Method that resets the safety rules.
 const RESET: &str = "/safety/reset";
 
-/// Returns the answer to a reset of the safety rules; `again` names the rules that had replaced a plan.
+/// Returns the answer to a reset of the safety rules; `again` names the rules that were off because they had replaced a
+/// plan.
 fn after_reset(again: &[String]) -> String {
     let limits = "the limits are those of the safety file";
     match again {

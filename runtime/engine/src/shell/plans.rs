@@ -16,7 +16,7 @@ use crate::module::PLAN;
 use crate::plans::{EngineAlphabet, PlanEvent, PlanSource, Plans, When};
 use crate::tree::{Answer, Change, Node, Reply, Role, Served, Value, ValueKind, read};
 
-/// Answer to a request whose plan was armed, but replaced before it took over.
+/// Answer to a request whose plan was armed but was replaced before it took over.
 const TAKEN: &str = "another plan takes its place";
 const SECONDS: ValueKind = ValueKind::Quantity(Quantity::Time, "s");
 
@@ -45,7 +45,7 @@ const OWN: [(&str, Node); 14] = [
     ("rollback", Node::method(Role::Swap, "ends the plan on trial, and lets the plan before it go on")),
 ];
 
-/// Plans, with the requests about them that are not answered yet.
+/// Plans in the tree, and the requests about them that have not been answered yet.
 #[derive(Debug, Default)]
 pub(super) struct PlansPart {
     waiting: Vec<WaitingRequest>,
@@ -64,13 +64,13 @@ struct WaitingRequest {
 }
 
 impl PlansPart {
-    /// Returns `true` if a request is not answered yet.
+    /// Returns `true` if a request has not been answered yet.
     pub(super) fn waits(&self) -> bool {
         !self.waiting.is_empty()
     }
 
-    /// Answers the requests that the engine has decided. Returns messages about plans whose requests were answered
-    /// earlier.
+    /// Answers the requests that the engine has decided. Returns messages about plans whose requests were already
+    /// answered.
     pub(super) fn answer<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>) -> Vec<String> {
         let mut messages = Vec::new();
         let mut replaced = Vec::new();
@@ -207,7 +207,7 @@ impl<A: EngineAlphabet> Served<Break<'_, Engine<A>>> for PlansPart {
     }
 }
 
-/// Sets an attribute; returns the number of the request if the compiler has to answer it.
+/// Sets an attribute. Returns the number of the request if the answer has to wait for the compiler.
 fn set<A: EngineAlphabet>(path: &str, text: &str, plans: &mut Plans<A>) -> Result<Option<u32>, String> {
     match path {
         "/usr/mdle/main" if text.starts_with('{') => Ok(Some(plans.swap(PlanSource::Text(text.to_owned()), When::Now))),
@@ -216,7 +216,7 @@ fn set<A: EngineAlphabet>(path: &str, text: &str, plans: &mut Plans<A>) -> Resul
     }
 }
 
-/// Calls a method; returns the number of the request if the compiler has to answer it.
+/// Calls a method. Returns the number of the request if the answer has to wait for the compiler.
 fn call<A: EngineAlphabet>(path: &str, arguments: &[String], engine: &mut Engine<A>) -> Result<Option<u32>, String> {
     if path == "/usr/mdle/load_plan" {
         let source = match arguments {
@@ -243,7 +243,7 @@ fn call<A: EngineAlphabet>(path: &str, arguments: &[String], engine: &mut Engine
     Ok(None)
 }
 
-/// Returns the moment that the arguments name; without arguments, the next turn.
+/// Returns the moment that the arguments name; the next turn if there are no arguments.
 pub(super) fn when(arguments: &[String]) -> Result<When, String> {
     let words = || When::ALL.map(|(word, _)| word).join(", ");
     match arguments {

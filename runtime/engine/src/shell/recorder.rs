@@ -1,7 +1,7 @@
-//! `/recorder`: writes turns to a record, from its start until it is stopped (docs/src/shell.md).
+//! `/recorder`: writes turns to a record file from the time it is started until it is stopped (docs/src/shell.md).
 //!
 //! A separate thread opens and writes the file, so a turn of a real robot never waits for the file. Turns that do not
-//! fit into the queue are omitted from the record, and counted.
+//! fit into the queue are omitted from the record; the recorder counts them.
 
 mod writer;
 
@@ -25,7 +25,7 @@ use crate::tree::{Answer, Change, Node, Reply, Role, Served, Value, ValueKind};
 
 /// Maximum number of turns in the queue to the writing thread.
 const WAITING: usize = 256;
-/// Maximum wait, at the end of the session, for the file to be complete.
+/// Maximum time that the end of the session waits for the file to be complete.
 const AT_THE_END: Duration = Duration::from_secs(2);
 
 /// The recorder of a session.
@@ -56,8 +56,8 @@ struct Tape {
 }
 
 impl RecorderPart {
-    /// Returns the recorder of a run with these terms on this target. It must be created before the control thread gets
-    /// real-time scheduling, because the recorder's thread would inherit it.
+    /// Creates the recorder of a run with these terms on this target. It must be created before the control thread gets
+    /// real-time scheduling, because the recorder's thread would inherit this scheduling.
     pub(super) fn new(terms: &RunTerms, target: &str) -> Self {
         let ((orders, waiting), (sender, opened)) = (sync_channel(WAITING), channel());
         let progress = Arc::<WriterProgress>::default();
@@ -86,7 +86,7 @@ impl RecorderPart {
         }
     }
 
-    /// Passes the turn that was made to the writing thread, if a record is being written.
+    /// Passes the turn that was made to the writing thread if a record is being written.
     pub(super) fn made<A>(&mut self, moment: &Break<'_, Engine<A>>)
     where
         A: EngineAlphabet<Input = Twist>,

@@ -21,7 +21,8 @@ use crate::tree::{Desk, Served};
 /// Interval at which a paused run checks whether it has to stop.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// Supervisor of a run with a shell: serves requests at turn breaks, and applies the safety rules, if there are any.
+/// Supervisor of a run with a shell. It serves requests at turn breaks, and applies the safety rules, if the run has
+/// any.
 #[derive(Debug)]
 pub struct Session<A: Alphabet> {
     desk: Desk,
@@ -47,7 +48,7 @@ struct TreeParts<A: Alphabet> {
 }
 
 impl<A: Alphabet> Session<A> {
-    /// Returns a session for a run with these terms. If `is_paused` is `true`, the run begins paused; in real time,
+    /// Creates a session for a run with these terms. If `is_paused` is `true`, the run begins paused; in real time,
     /// this has no effect.
     #[must_use]
     pub fn new(desk: Desk, guardian: Option<Guardian<A>>, terms: &RunTerms, is_paused: bool) -> Self {
@@ -135,7 +136,7 @@ where
     A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    /// Serves requests. Waits at most `wait` for a request; `None` means that it does not wait.
+    /// Serves requests. Waits for a request for at most the time `wait`; `None` means no waiting.
     fn serve(&mut self, moment: &mut Break<'_, Engine<A>>, wait: Option<Duration>) {
         let Self { desk, parts, .. } = self;
         let has_changed = match wait {
@@ -161,7 +162,7 @@ where
         [robot, plans, modules, clock, engine, safety, recorder, link]
     }
 
-    /// Continues requests that take longer than a turn break, and answers requests that are decided.
+    /// Continues requests that take longer than a turn break, and answers requests whose result is known.
     fn proceed(&mut self, pilot: &mut Engine<A>, has_changed: bool) {
         if has_changed || self.plans.waits() || self.modules.waits() {
             let loaded = pilot.progress();

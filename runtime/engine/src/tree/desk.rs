@@ -18,7 +18,7 @@ const EACH_BREAK: usize = 16;
 /// Maximum number of attempts to publish the last snapshot.
 const CLOSING: usize = 5;
 
-/// Channel for the answer to a change. Dropping it means that the run has ended.
+/// Channel for the answer to a change. Dropping the channel tells the front end that the run has ended.
 #[derive(Debug)]
 pub struct Reply(Sender<Answer>);
 
@@ -29,17 +29,17 @@ impl Reply {
     }
 }
 
-/// A part of the engine with nodes in the tree. `M` is the type of the data that the part gets at a turn break.
+/// A part of the engine that has nodes in the tree. `M` is the type of the data that the part gets at a turn break.
 pub trait Served<M: ?Sized> {
     /// Returns the nodes of the part with their paths, in a fixed order.
     fn nodes(&self, moment: &M) -> Vec<(String, Node)>;
 
-    /// Appends a value for each node, in the order of [`Served::nodes`]: `None` for a method, and for a node that has
-    /// no value yet.
+    /// Appends a value for each node, in the order of [`Served::nodes`]: the value is `None` for a method, and for a
+    /// node that has no value yet.
     fn values(&self, moment: &M, to: &mut Vec<Option<Value>>);
 
-    /// Carries out a change of one of the part's nodes. The change has been checked against the node's kind, access and
-    /// role. The part may keep `reply` to answer at a later turn break.
+    /// Carries out a change of one of the part's nodes. The caller has checked that the node's kind, access and role
+    /// permit the change. The part may keep `reply` in order to answer at a later turn break.
     fn change(&mut self, path: &str, change: &Change, moment: &mut M, reply: Reply);
 }
 
@@ -80,7 +80,7 @@ impl Desk {
         (hub, desk)
     }
 
-    /// Notes that a break begins, before anything changes: the last snapshot is out of date from now on.
+    /// Records that a turn break begins, before anything changes: from now on, the last snapshot is out of date.
     pub fn begin_break(&self) {
         self.shared.is_current.store(false, Ordering::SeqCst);
     }
@@ -95,7 +95,7 @@ impl Desk {
         served
     }
 
-    /// Waits for a change, at most for this time, and carries it out; returns `true` if there was one.
+    /// Waits for a change for at most the time `time`, and carries it out. Returns `true` if there was a change.
     pub fn wait<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M, time: Duration) -> bool {
         let request = self.requests.recv_timeout(time);
         self.begin_break();
@@ -126,8 +126,8 @@ impl Desk {
         std::mem::take(&mut self.carried_out)
     }
 
-    /// Carries out a request; returns `true` if it was a change. A read request only ends the wait for requests: the
-    /// front end reads the next snapshot.
+    /// Carries out a request; returns `true` if it was a change. A read request only ends the wait for requests,
+    /// because the front end reads the value from the next snapshot.
     fn carry_out<M: ?Sized>(
         &mut self,
         Pending { request, reply }: Pending,

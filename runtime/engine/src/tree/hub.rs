@@ -13,7 +13,7 @@ use super::{Access, Answer, Change, Node, Operation, Request, Role, Tree};
 
 /// Maximum number of changes that wait for a turn break.
 pub const QUEUE: usize = 64;
-/// Interval at which a waiting front end's function is called.
+/// Interval at which a waiting front end calls its function `meanwhile`.
 const LOOK: Duration = Duration::from_millis(50);
 /// Maximum wait for a snapshot newer than the request.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -27,12 +27,12 @@ pub struct Hub {
     shared: Arc<SharedTree>,
     queue: SyncSender<Pending>,
     reports: Arc<Mutex<Receiver<String>>>,
-    /// Requests for which the front end no longer waits, as commands, with the channels for their answers.
+    /// Requests whose answers the front end no longer waits for: each as a command, with the channel for its answer.
     later: Arc<Mutex<LateAnswers>>,
 }
 
 impl Hub {
-    /// Returns the hub that shares this data with a desk.
+    /// Creates the hub that shares this data with a desk.
     pub(super) fn new(shared: Arc<SharedTree>, queue: SyncSender<Pending>, reports: Receiver<String>) -> Self {
         Self { shared, queue, reports: Arc::new(Mutex::new(reports)), later: Arc::default() }
     }
@@ -52,8 +52,8 @@ impl Hub {
         self.shared.ended.load(Ordering::SeqCst)
     }
 
-    /// Returns the next answer to a request for which the front end no longer waits, or the next report of a watched
-    /// attribute: time, path and value. Waits for a report at most for this time.
+    /// Returns the next answer to a request whose front end has stopped waiting, or the next report of a watched
+    /// attribute: time, path and value. Waits for a report for at most the time `wait`.
     #[must_use]
     pub fn report(&self, wait: Duration) -> Option<String> {
         if let Some(answer) = self.late_answer() {
@@ -62,15 +62,15 @@ impl Hub {
         self.reports.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(wait).ok()
     }
 
-    /// Answers a request as [`Hub::wait`] does.
+    /// Carries out a request and returns the answer, as [`Hub::wait`] does.
     #[must_use]
     pub fn ask(&self, request: Request) -> Answer {
         self.wait(request, Duration::MAX, &mut || ())
     }
 
-    /// Answers a request. Waits at most for `patience` until a turn break has carried out a change; after that time,
-    /// [`Hub::report`] returns the answer. Calls `meanwhile` at intervals while it waits. After the run, only read
-    /// requests are answered.
+    /// Carries out a request and returns the answer. Waits for at most the time `patience` until a turn break has
+    /// carried out a change; after that time, [`Hub::report`] returns the answer. Calls `meanwhile` at intervals while
+    /// it waits. After the run, only read requests are answered.
     #[must_use]
     pub fn wait(&self, request: Request, patience: Duration, meanwhile: &mut dyn FnMut()) -> Answer {
         let Some(snapshot) = self.snapshot() else { return Answer::Ended };
@@ -107,7 +107,7 @@ impl Hub {
         }
     }
 
-    /// Removes an answer that came after the front end stopped waiting, and returns it with its command.
+    /// Removes and returns an answer that came after the front end had stopped waiting, with its command.
     fn late_answer(&self) -> Option<String> {
         let mut later = self.later.lock().unwrap_or_else(PoisonError::into_inner);
         let (place, answer) = later.iter().enumerate().find_map(|(place, (_, answer))| match answer.try_recv() {
@@ -164,9 +164,10 @@ impl Hub {
         }
     }
 
-    /// Returns a snapshot of the present state: the last snapshot if no break has begun since, because nothing changes
-    /// between two breaks, and otherwise one that was taken after the call. Returns the last snapshot also if the robot
-    /// makes no turn within [`PATIENCE`] or the run has ended, and `None` if there is no snapshot.
+    /// Returns a snapshot of the present state. This is the last snapshot if no turn break has begun since, because
+    /// nothing changes between two breaks; otherwise, it is a snapshot that was taken after the call. If the robot
+    /// makes no turn within [`PATIENCE`], or the run has ended, returns the last snapshot; `None` if there is no
+    /// snapshot.
     fn snapshot(&self) -> Option<Arc<Snapshot>> {
         let mut kept = self.lock();
         let before = kept.number;
@@ -188,7 +189,8 @@ impl Hub {
     }
 }
 
-/// Returns the answer about a path that does not exist, or about a folder where a node is expected or vice versa.
+/// Returns the answer about a path that does not exist, or that names a folder instead of a node, or a node instead of
+/// a folder.
 fn nothing(tree: &Tree, path: &str) -> Answer {
     if !names(tree, path).is_empty() {
         return Answer::Refused(format!("`{path}` is a folder: `ls {path}` lists it"));

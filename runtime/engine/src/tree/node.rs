@@ -1,4 +1,4 @@
-//! The nodes of the tree, with the operations on them and the roles that may perform these operations.
+//! The nodes of the tree, the operations on nodes, and the roles that may perform these operations.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -60,7 +60,7 @@ pub enum ValueKind {
     Bytes,
 }
 
-/// Role of a user. Each role includes the rights of the roles before it.
+/// Role of a user. Each role includes the rights of all lower roles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
     /// Role that may only read.
@@ -90,19 +90,19 @@ impl Role {
 }
 
 impl Node {
-    /// Returns an attribute that can only be read.
+    /// Creates an attribute that can only be read.
     #[must_use]
     pub const fn reading(kind: ValueKind, doc: &'static str) -> Self {
         Self { access: Access::Read, kind, role: Role::View, doc }
     }
 
-    /// Returns an attribute that this role may set.
+    /// Creates an attribute that a user with this role may set.
     #[must_use]
     pub const fn setting(kind: ValueKind, role: Role, doc: &'static str) -> Self {
         Self { access: Access::Write, kind, role, doc }
     }
 
-    /// Returns a method that this role may call.
+    /// Creates a method that a user with this role may call.
     #[must_use]
     pub const fn method(role: Role, doc: &'static str) -> Self {
         Self { access: Access::Call, kind: ValueKind::Text, role, doc }

@@ -1,15 +1,15 @@
-//! Proposes an existing path that the user may have meant by a path that does not exist.
+//! Proposes an existing path to a user who has typed a path that does not exist.
 
 use mdle_compiler::alphabet::nearest;
 
 use super::Tree;
 use super::node::names;
 
-/// Maximum number of names in a sentence.
+/// Maximum number of names that a sentence lists.
 const NAMED: usize = 12;
 
-/// Returns the end of a sentence about a path that does not exist: a path with the same ending, a similar path, or the
-/// names in the deepest existing folder of the path.
+/// Returns the end of a sentence about a path that does not exist. It proposes a path with the same ending or a similar
+/// path, or lists the names in the path's deepest existing folder.
 pub(super) fn proposal(tree: &Tree, path: &str) -> String {
     let mean = |path: &str| format!("; did you mean `{path}`?");
     let mut alike = tree.keys().filter(|known| path.len() > 1 && known.ends_with(path));
@@ -40,7 +40,7 @@ fn content(folder: &str, names: &[String]) -> String {
     }
 }
 
-/// Returns a list of names for a sentence, at most twelve.
+/// Returns a list of at most twelve names for a sentence.
 pub(crate) fn listed<S: AsRef<str>>(names: &[S]) -> String {
     let first: Vec<_> = names.iter().take(NAMED).map(AsRef::as_ref).collect();
     match names.len().saturating_sub(NAMED) {

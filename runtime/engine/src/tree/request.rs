@@ -22,7 +22,7 @@ pub enum Operation {
     List,
     /// Read the value of an attribute.
     Get,
-    /// Set an attribute or call a method, at the next turn break.
+    /// Set an attribute or call a method at the next turn break.
     Change(Change),
     /// Start (`true`) or stop (`false`) reporting changes of an attribute, from the next turn break on. See
     /// [`Hub::report`](super::Hub::report).
@@ -67,6 +67,6 @@ pub enum Answer {
     Done(String),
     /// Sentence with the reason why the request was refused.
     Refused(String),
-    /// No desk answers: the run has ended, or has not begun.
+    /// No desk answers, because the run has ended or has not begun.
     Ended,
 }

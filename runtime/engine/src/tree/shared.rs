@@ -13,9 +13,9 @@ pub(super) const NO_VALUE: &str = "(no value yet)";
 #[derive(Debug, Default)]
 pub(super) struct Snapshot {
     pub(super) tree: Arc<Tree>,
-    /// Values in the order of the nodes; `None` for a method, and for an attribute that has no value yet.
+    /// Values in the order of the nodes; the value is `None` for a method, and for an attribute that has no value yet.
     pub(super) values: Vec<Option<Value>>,
-    /// Number of the snapshot, from 1.
+    /// Number of the snapshot, counted from 1.
     pub(super) number: u64,
 }
 
@@ -24,14 +24,15 @@ pub(super) struct Snapshot {
 pub(super) struct SharedTree {
     pub(super) snapshot: Mutex<Arc<Snapshot>>,
     pub(super) changed: Condvar,
-    /// `true` from the end of a break whose state the snapshot shows until the next break begins.
+    /// `true` while the snapshot shows the current state: from the end of the turn break of the snapshot until the next
+    /// turn break begins.
     pub(super) is_current: AtomicBool,
     /// `true` if a front end waits for a snapshot.
     pub(super) wanted: AtomicBool,
     pub(super) ended: AtomicBool,
 }
 
-/// A change that waits, and the channel for its answer.
+/// A change that waits for a turn break, and the channel for its answer.
 #[derive(Debug)]
 pub(super) struct Pending {
     pub(super) request: Request,

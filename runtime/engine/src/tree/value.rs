@@ -1,4 +1,4 @@
-//! Values of attributes in the form in which they are shown and typed; quantities have the units of the plan language.
+//! Values of attributes as they are shown and typed; quantities have the units of the plan language.
 
 use std::fmt::{self, Write as _};
 use std::sync::Arc;
@@ -50,7 +50,7 @@ impl Value {
 }
 
 impl fmt::Display for Value {
-    /// Writes the value in the form in which it can be typed; numbers with units are rounded to a millionth.
+    /// Writes the value as users can type it; numbers with units are rounded to a millionth.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Flag(flag) => write!(f, "{flag}"),

@@ -1,4 +1,4 @@
-//! Attributes that a front end watches. Changed values are reported, but at most at a rate that users can read.
+//! Attributes that a front end watches. Changed values are reported, at a rate that users can read.
 
 use std::sync::mpsc::SyncSender;
 

@@ -1,4 +1,4 @@
-//! Records the path that a robot drives, with a row for each turn.
+//! Records the path that a robot drives; each turn becomes a row.
 
 use std::io::{self, Write};
 
@@ -11,13 +11,13 @@ pub(crate) struct PathRecording<W: Write = Outlet> {
     file: W,
     /// Heading by odometry in the first row; `None` before the first row.
     begun: Option<Radians>,
-    /// Result of writing. After an error nothing more is written, and the error is reported at the end, because it is
-    /// no reason for stopping a robot.
+    /// Result of writing so far. After an error, nothing more is written. The error is reported at the end of the run,
+    /// because it is no reason for stopping a robot.
     written: io::Result<()>,
 }
 
 impl<W: Write> PathRecording<W> {
-    /// Returns a recorder that writes to `file`.
+    /// Creates a recorder that writes to `file`.
     pub(crate) fn new(mut file: W) -> Self {
         let written = file.write_all(b"time s, heading deg, speed cm/s\n");
         Self { file, begun: None, written }

@@ -7,17 +7,18 @@ use std::time::Duration;
 
 use mdle_runtime::{MetersPerSecond, Nanos, Radians, Setpoint, Twist};
 
-/// Maximum time between two rows; over a longer time the motion between them would be a guess.
+/// Maximum time between two rows. With more time between them, the motion from one row to the next would be a guess.
 pub(super) const APART: Duration = Duration::from_secs(1);
 
 /// Header of a path file, as messages show it.
 const HEADER: &str = "`time s, heading deg, speed cm/s`";
-/// Factor by which a path may exceed the robot's limits, because speeds measured at the limits may be above them.
+/// Factor by which the speeds of a path may exceed the robot's limits, because measured speeds may be slightly above
+/// the limits.
 const MARGIN: f64 = 1.05;
-/// Latest time of a row, in nanoseconds: three months. An `f64` represents every whole number up to this time exactly.
+/// Latest time of a row, in nanoseconds: three months. Up to this time, an `f64` represents every whole number exactly.
 const LATEST: f64 = (1_u64 << 53) as f64;
 
-/// A column, with its units as factors to nanoseconds, radians, or metres per second.
+/// A column of a path file. Each of its units has a factor that converts to nanoseconds, radians, or metres per second.
 struct Column {
     name: &'static str,
     units: [(&'static str, f64); 2],
@@ -29,7 +30,7 @@ const COLUMNS: [Column; 3] = [
     Column { name: "speed", units: [("cm/s", 0.01), ("m/s", 1.0)] },
 ];
 
-/// An error in a path: its line and column, from 1, and the message.
+/// An error in a path: its line and column, counted from 1, and the message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TextFault {
     pub(super) place: Option<(usize, usize)>,
@@ -48,7 +49,7 @@ impl RowCell<'_> {
         TextFault { place: Some(self.place), what }
     }
 
-    /// Returns the number in the cell; error messages call it `what`.
+    /// Returns the number in the cell; an error message calls the number `what`.
     fn number(&self, what: &str) -> Result<f64, TextFault> {
         match self.text.parse::<f64>() {
             _ if self.text.is_empty() => Err(self.wrong(format!("the {what} is missing"))),
@@ -68,8 +69,8 @@ pub(super) fn utf8(bytes: &[u8]) -> Result<&str, TextFault> {
     })
 }
 
-/// Returns the setpoints in `text`, for a robot with the maximum speeds `fastest`. The first setpoint is at time 0, and
-/// each other setpoint is later than the previous one.
+/// Returns the setpoints in `text`, which must not exceed the maximum speeds `fastest` of the robot. The first setpoint
+/// is at time 0, and each other setpoint is later than the previous one.
 pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, TextFault> {
     // Some spreadsheets begin a file with a byte order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -146,7 +147,7 @@ impl Column {
     }
 }
 
-/// Setpoints of the rows so far.
+/// Setpoints of the rows that have been parsed so far.
 struct PathRows {
     units: [(&'static str, f64); 3],
     fastest: Twist,
@@ -176,7 +177,7 @@ impl PathRows {
         Ok(())
     }
 
-    /// Checks and returns the time of the next setpoint, `nanos` nanoseconds after the first.
+    /// Checks and returns the time of the next setpoint. `nanos` is the time since the first setpoint, in nanoseconds.
     fn time(&self, cell: &RowCell<'_>, nanos: f64) -> Result<Nanos, TextFault> {
         if nanos > LATEST {
             return Err(cell.wrong(format!("no path is as long as {}", self.shown(cell))));
@@ -203,7 +204,7 @@ impl PathRows {
         }
     }
 
-    /// Returns a time as it is written, with its unit.
+    /// Returns a time as written in the file, with its unit.
     fn shown(&self, cell: &RowCell<'_>) -> String {
         let [(unit, _), ..] = self.units;
         format!("{} {unit}", cell.text)
@@ -218,7 +219,7 @@ impl PathRows {
         Err(cell.wrong(format!("{} {unit} is too fast: this robot drives at {fastest} {unit} at most", cell.text)))
     }
 
-    /// Checks that the robot can turn from the previous heading to this heading in time.
+    /// Checks that the robot has enough time to turn from the heading of the previous setpoint to the heading of `to`.
     fn check_turn(&self, cell: &RowCell<'_>, to: &Setpoint) -> Result<(), TextFault> {
         let Some(from) = self.setpoints.last() else { return Ok(()) };
         let (turn, seconds) = (Radians(to.heading.0 - from.heading.0).wrapped(), to.at.since(from.at).seconds());

@@ -1,5 +1,5 @@
-//! The views of a run by odometry: the path driven as the robot reports it, the echoes of its sonars as points, and the
-//! places where atoms began.
+//! The views of a run by odometry. They show the driven path as the robot reports it, the echoes of the robot's sonars
+//! as points, and the positions where atoms began.
 
 use clap::ArgMatches;
 use mdle_runtime::capability::Bumpers as _;
@@ -30,7 +30,7 @@ pub(crate) struct ByOdometry {
 struct OdometryTable {
     file: WholeFile,
     patience: Patience,
-    /// Writer of the lines; `None` before the first output. A slow disk does not make the robot wait.
+    /// Writer of the lines; `None` before the first output. The robot does not wait for a slow disk.
     lines: Option<Unfinished<Outlet>>,
 }
 
@@ -78,8 +78,8 @@ impl ByOdometry {
         }
     }
 
-    /// Restores the screen, and updates the pictures with the output after which the robot was stopped, if there is
-    /// one.
+    /// Restores the screen, and updates the pictures with the output that followed the stop of the robot, if there is
+    /// such an output.
     pub(crate) fn stopped(&mut self, y: Option<&Sensed>) {
         if let Some(watch) = &mut self.watch {
             watch.leave();

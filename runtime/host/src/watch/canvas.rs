@@ -1,6 +1,6 @@
 //! Draws a picture of dots with the characters of a terminal: each character has two by four dots and one colour.
 
-/// Colour of a character; a later variant covers an earlier one.
+/// Colour of a character. A colour covers all colours that are declared before it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Ink {
     /// No dot is drawn.

@@ -1,4 +1,5 @@
-//! Draws the floor as dots: first walls and goal, then the growing path driven, and on top the robot with its echoes.
+//! Draws the floor as dots: first the walls and the goal, then the driven path, and on top of these the robot with its
+//! echoes.
 
 use mdle_runtime::{Meters, Radians};
 use mdle_simulator::{Footprint, Form, Point, Thing, World, Zone, edge};
@@ -22,14 +23,15 @@ pub(super) struct Map {
     corner: Point,
     /// Number of dots per metre.
     scale: f64,
-    /// Number of places of the path driven that are drawn.
+    /// Number of positions of the driven path that have been drawn.
     way_count: usize,
-    /// Number of places of earlier echoes that are drawn.
+    /// Number of positions of earlier echoes that have been drawn.
     echo_count: usize,
 }
 
 impl Map {
-    /// Returns the map of a floor, and of the places in `way` and `echoes`, in `columns` columns and `rows` rows.
+    /// Returns a map that is `columns` wide and `rows` high, and shows a floor with the positions in `way` and
+    /// `echoes`.
     pub(super) fn of(world: &World, way: &[Point], echoes: &[Point], columns: usize, rows: usize) -> Self {
         let places = || world.places().chain(way.iter().chain(echoes).copied());
         let range = |of: fn(&Point) -> f64| {
@@ -83,7 +85,7 @@ impl Map {
         self.echo_count = echoes.len();
     }
 
-    /// Draws the new part of the path driven.
+    /// Draws the part of the driven path that has not been drawn yet.
     pub(super) fn draw_way(&mut self, way: &[Point]) {
         for place in way.iter().skip(self.way_count) {
             self.dot(*place, Ink::Way);
@@ -91,7 +93,7 @@ impl Map {
         self.way_count = way.len();
     }
 
-    /// Returns a map with the moving objects, each with its displacement.
+    /// Returns a copy of the map with the moving objects drawn, each at its displacement.
     pub(super) fn with<'t>(&self, things: impl Iterator<Item = (&'t Thing, Point)>) -> Self {
         let mut map = self.clone();
         for (thing, displacement) in things {
@@ -102,7 +104,7 @@ impl Map {
         map
     }
 
-    /// Draws the echoes that the robot hears.
+    /// Draws the echoes that the robot receives at present.
     pub(super) fn draw_current_echoes(&mut self, echoes: &[Point]) {
         for echo in echoes {
             self.dot(*echo, Ink::Echo);

@@ -1,5 +1,5 @@
-//! The alternate screen of a terminal. The terminal's settings are restored at every orderly end, after a panic, and
-//! when a turn that hangs or a second signal ends the program.
+//! The alternate screen of a terminal. The terminal's settings are restored at every orderly end and after a panic, and
+//! also when the program is ended because of a turn that hangs or a second signal.
 
 use std::fs::File;
 use std::io::{self, IsTerminal, Write, stdout};
@@ -25,7 +25,7 @@ static SETTINGS: Mutex<Option<SavedSettings>> = Mutex::new(None);
 
 struct SavedSettings(Option<Termios>);
 
-/// The terminal, opened so that writes never wait, with the unwritten rest of a picture.
+/// The terminal, opened so that writes never wait, and the part of a picture that has not been written yet.
 static TERMINAL: Mutex<Option<TerminalState>> = Mutex::new(None);
 
 struct TerminalState {
@@ -33,7 +33,7 @@ struct TerminalState {
     left: Vec<u8>,
 }
 
-/// Maximum number of columns and rows of the live view; a terminal may report far more.
+/// Maximum number of columns and rows of the live view, because a terminal may report far more.
 const SIZE_MOST: (usize, usize) = (500, 200);
 /// Maximum time for restoring the terminal.
 const LEAVING: Duration = Duration::from_millis(500);
@@ -105,7 +105,7 @@ fn leave() {
     restore(settings);
 }
 
-/// Restores the screen while the thread that uses it hangs: the function waits for no lock of that thread.
+/// Restores the screen although the thread that uses it hangs. Does not wait for a lock of that thread.
 pub(super) fn leave_at_once() {
     if terminal().is_some() {
         return leave();
@@ -123,7 +123,7 @@ fn restore(settings: Option<Termios>) {
     }
 }
 
-/// Opens the terminal a second time, so that writes do not wait. If that is not permitted, writes may wait.
+/// Opens the terminal a second time, so that writes to it do not wait. If this is not permitted, writes may wait.
 fn opened() -> Option<TerminalState> {
     let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
     let file = File::options().write(true).custom_flags(flags).open("/proc/self/fd/1").ok()?;
@@ -135,8 +135,8 @@ fn terminal() -> MutexGuard<'static, Option<TerminalState>> {
 }
 
 impl TerminalState {
-    /// Writes as much of the rest as the terminal accepts. Returns `true` if the rest is empty, or if nothing can be
-    /// written any more.
+    /// Writes as much of the remaining picture as the terminal accepts. Returns `true` if nothing remains, or if
+    /// nothing can be written any more.
     fn push(&mut self) -> bool {
         while !self.left.is_empty() {
             match self.file.write(&self.left) {
@@ -167,7 +167,7 @@ fn write(text: &str) {
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
-/// Writes the rest and then `text`, within the maximum time for restoring the terminal.
+/// Writes the remaining picture and then `text`, for at most the maximum time for restoring the terminal.
 fn write_to_the_end(text: &str) {
     let mut terminal = terminal();
     let Some(terminal) = terminal.as_mut() else {

@@ -1,10 +1,12 @@
-//! Formats the text around the map: time and place above it, and the current atom with its enclosing scopes below it.
+//! Formats the text around the map: time and position above it, and the current atom with its enclosing scopes below
+//! it.
 
 use mdle_runtime::{Pose, Printable};
 
 use crate::{EnclosingScope, PlanPosition};
 
-/// Maximum number of scopes in the view; the outermost and the innermost scopes are most important.
+/// Maximum number of scopes in the view. The outermost and the innermost scopes are shown, because they are most
+/// important.
 const SCOPES_MOST: usize = 4;
 /// Width of a bar, in characters.
 const BAR: usize = 20;
@@ -25,7 +27,7 @@ pub(super) struct Now {
 struct ViewedScope {
     title: String,
     seconds: f64,
-    /// Time in the scope's `wait`, in seconds, if its condition has a `wait`.
+    /// Time in the scope's `wait`, in seconds; `None` if its condition has no `wait`.
     wait: Option<f64>,
 }
 
@@ -92,14 +94,15 @@ impl ViewedScope {
     }
 }
 
-/// Returns the time of the first `wait` in the text of a condition, in seconds, if it is a number.
+/// Returns the time, in seconds, of the first `wait` in the text of a condition; `None` if there is no `wait` or its
+/// time is not a number.
 fn wait(condition: &str) -> Option<f64> {
     let words: Vec<&str> = condition.split([' ', '(', ')']).filter(|word| !word.is_empty()).collect();
     let at = words.iter().position(|word| *word == "wait")?;
     words.get(at + 1)?.parse().ok().filter(|seconds: &f64| seconds.is_finite())
 }
 
-/// Returns the beginning of a text that fits into `room` characters.
+/// Returns the longest beginning of a text that fits into `room` characters.
 fn cut(text: &str, room: usize) -> String {
     let text = Printable(text).to_string();
     if text.chars().count() <= room {

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use clap::{Arg, ArgMatches, Command};
 use mdle_quantity::Quantity;
 
-/// Source of the sound, as given with `--ears`.
+/// Source of the sound that `--ears` names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum EarsOption {
     /// The robot's own microphones.
     Robot,
     /// A WAV file.
     Wav(PathBuf),
-    /// A recorder that writes raw samples to a pipe; `None` for standard input.
+    /// A recorder that writes raw samples to a pipe. Contains the path of the pipe; `None` means standard input.
     Raw(Option<PathBuf>),
 }
 
@@ -30,7 +30,7 @@ impl EarsOption {
     }
 }
 
-/// Returns `command` with the options `--ears` and `--head`.
+/// Adds the options `--ears` and `--head` to `command`.
 pub(super) fn with_ears(command: Command) -> Command {
     let ears = Arg::new("ears")
         .long("ears")
@@ -46,7 +46,7 @@ pub(super) fn with_ears(command: Command) -> Command {
     command.args([ears, head])
 }
 
-/// Returns the source of the sound, or `None` without `--ears`, and the radius of the head in metres.
+/// Returns the source of the sound (`None` without `--ears`), and the radius of the head in metres.
 pub(super) fn ears(matches: &ArgMatches) -> (Option<EarsOption>, f64) {
     let ears = matches.get_one::<String>("ears").map(|text| EarsOption::read(text));
     (ears, matches.get_one("head").copied().unwrap_or(mdle_sound::RADIUS))

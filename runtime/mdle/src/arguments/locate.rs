@@ -9,16 +9,16 @@ use crate::evidence::USUAL_POSE;
 /// The arguments of `mdle locate`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Locate {
-    /// The record; `-` is standard input.
+    /// File of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// The YAML files of the maps.
+    /// YAML files of the maps.
     pub(crate) maps: Vec<PathBuf>,
-    /// Pose near which the record began, in the coordinates of each map, as typed.
+    /// Pose near which the record began, as typed by the user, in the coordinates of each map.
     pub(crate) at: String,
 }
 
 impl Locate {
-    /// Returns the arguments from the parsed command line.
+    /// Reads the arguments from the parsed command line.
     pub(super) fn of(matches: &ArgMatches) -> Self {
         Self {
             log: matches.get_one("log").cloned().unwrap_or_default(),
@@ -28,7 +28,7 @@ impl Locate {
     }
 }
 
-/// Returns the command line of `mdle locate`.
+/// Returns the definition of the command `mdle locate` and its arguments.
 pub(super) fn locate() -> Command {
     let path = |name: &'static str| Arg::new(name).value_parser(value_parser!(PathBuf)).required(true);
     Command::new("locate")

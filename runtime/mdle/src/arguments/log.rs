@@ -7,23 +7,24 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 /// The arguments of `mdle log`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Log {
-    /// `mdle log info`: the record.
+    /// `mdle log info`; contains the file of the record.
     Info(PathBuf),
-    /// `mdle log cut`: the record, the time of the last turn, and the file of the new record.
+    /// `mdle log cut`; contains the file of the record, the time of the last turn, and the file of the new record.
     Cut(PathBuf, String, PathBuf),
     /// `mdle log export`.
     Export {
-        /// The record.
+        /// File of the record.
         log: PathBuf,
-        /// `Some` to write a script instead of a table; contains the file of the plan if the record lacks the plan.
+        /// `Some` to write a script instead of a table. Contains the file of the plan, if the record does not contain
+        /// the plan.
         script: Option<Option<PathBuf>>,
-        /// File to write; `None` for standard output.
+        /// File to write; `None` means standard output.
         file: Option<PathBuf>,
     },
 }
 
 impl Log {
-    /// Returns the arguments from the parsed command line.
+    /// Reads the arguments from the parsed command line.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let path = |matches: &ArgMatches, name: &str| matches.get_one::<PathBuf>(name).cloned().unwrap_or_default();
         match matches.subcommand() {
@@ -42,7 +43,7 @@ impl Log {
     }
 }
 
-/// Returns the command line of `mdle log`.
+/// Returns the definition of the command `mdle log` and its arguments.
 pub(crate) fn log() -> Command {
     let log = || {
         Arg::new("log")

@@ -3,7 +3,7 @@
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use clap_complete::Shell;
 
-/// Returns the command line of `mdle completions`.
+/// Returns the definition of the command `mdle completions` and its arguments.
 pub(crate) fn completions() -> Command {
     Command::new("completions")
         .about("Print a script that completes the commands and options of mdle in a shell")
@@ -25,7 +25,7 @@ pub(crate) fn shell(matches: &ArgMatches) -> Shell {
     matches.get_one("shell").copied().unwrap_or(Shell::Bash)
 }
 
-/// Returns the command line of `mdle man`.
+/// Returns the definition of the command `mdle man` and its arguments.
 pub(crate) fn man() -> Command {
     Command::new("man")
         .about("Print the manual page of mdle or of a command")

@@ -9,18 +9,18 @@ use crate::evidence::USUAL_POSE;
 /// The arguments of `mdle map`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct MakeMap {
-    /// The record; `-` is standard input.
+    /// File of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// The YAML file to write; the image is written beside it.
+    /// YAML file to write. The image is written to the same folder.
     pub(crate) file: PathBuf,
-    /// Pose of the robot at the start of the record, in map coordinates, as typed.
+    /// Pose of the robot at the start of the record, as typed by the user, in map coordinates.
     pub(crate) at: String,
-    /// PNG to write as well; `None` to write no PNG.
+    /// PNG file to write in addition; `None` if no PNG is requested.
     pub(crate) png: Option<PathBuf>,
 }
 
 impl MakeMap {
-    /// Returns the arguments from the parsed command line.
+    /// Reads the arguments from the parsed command line.
     pub(super) fn of(matches: &ArgMatches) -> Self {
         let path = |name: &str| matches.get_one::<PathBuf>(name).cloned().unwrap_or_default();
         let at = matches.get_one::<String>("at").cloned().unwrap_or_default();
@@ -28,7 +28,7 @@ impl MakeMap {
     }
 }
 
-/// Returns the command line of `mdle map`.
+/// Returns the definition of the command `mdle map` and its arguments.
 pub(super) fn map() -> Command {
     let path = |name: &'static str| Arg::new(name).value_parser(value_parser!(PathBuf)).required(true);
     Command::new("map")

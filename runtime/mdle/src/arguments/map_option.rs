@@ -15,7 +15,7 @@ pub(super) const OPTIONS: [&str; 2] = ["--map", "--map-at"];
 pub(crate) struct MapOption {
     /// YAML file to write.
     pub(crate) file: PathBuf,
-    /// Pose of the robot at the start of the run, in map coordinates, as typed.
+    /// Pose of the robot at the start of the run, as typed by the user, in map coordinates.
     pub(crate) at: String,
 }
 
@@ -27,7 +27,7 @@ impl MapOption {
     }
 }
 
-/// Returns `command` with the options `--map` and `--map-at`.
+/// Adds the options `--map` and `--map-at` to `command`.
 pub(super) fn with_map(command: Command) -> Command {
     let map = Arg::new("map")
         .long("map")

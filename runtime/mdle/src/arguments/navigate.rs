@@ -8,24 +8,24 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 /// The arguments of `mdle navigate`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Navigate {
-    /// The file whose plans are the edges of the graph.
+    /// File whose plans are the edges of the graph.
     pub(crate) graph: PathBuf,
     /// Landmark at which the robot begins.
     pub(crate) from: String,
     /// Destination landmark, preceded by the landmarks to pass on the way, separated by commas.
     pub(crate) to: String,
-    /// Name or folder of the target; `None` for the target of the `mdle.toml` beside the graph.
+    /// Name or folder of the target; `None` for the target that the `mdle.toml` beside the graph names.
     pub(crate) target: Option<String>,
-    /// File of the landmarks; `None` for the `landmarks.toml` beside the graph.
+    /// File of the landmarks; `None` for the file `landmarks.toml` beside the graph.
     pub(crate) landmarks: Option<PathBuf>,
-    /// Program and arguments of this call, without the options of the run.
+    /// Program name and arguments of this call, without the options of the run.
     pub(crate) words: Vec<OsString>,
     /// The options of the run.
     pub(crate) options: Vec<OsString>,
 }
 
 impl Navigate {
-    /// Returns the arguments from the parsed command line.
+    /// Reads the arguments from the parsed command line.
     pub(super) fn of(matches: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>) -> Self {
         let text = |name: &str| matches.get_one::<String>(name).cloned();
         let path = |name: &str| matches.get_one::<PathBuf>(name).cloned();
@@ -41,7 +41,7 @@ impl Navigate {
     }
 }
 
-/// Returns the command line of `mdle navigate`.
+/// Returns the definition of the command `mdle navigate` and its arguments.
 pub(super) fn navigate() -> Command {
     let path = |name: &'static str| Arg::new(name).value_parser(value_parser!(PathBuf));
     Command::new("navigate")

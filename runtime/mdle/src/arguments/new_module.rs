@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Arg, Command, value_parser};
 
-/// Returns the command line of `mdle new-module`.
+/// Returns the definition of the command `mdle new-module` and its arguments.
 pub(super) fn new_module() -> Command {
     Command::new("new-module")
         .about("Create a crate with a module of your own, and a program `mdle` that has it")

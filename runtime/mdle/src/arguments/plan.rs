@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, Command, value_parser};
 
 use super::module_options::{module, point};
 
-/// Returns a command with the arguments for the plan and for its compilation.
+/// Adds the arguments for the plan and for its compilation to a command.
 pub(super) fn with_plan(command: Command) -> Command {
     command
         .arg(

@@ -8,20 +8,20 @@ use mdle_host::output_format;
 /// The arguments of `mdle plot`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Plot {
-    /// The record; `-` is standard input.
+    /// File of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// The SVG file to write.
+    /// SVG file to write.
     pub(crate) file: PathBuf,
-    /// File of the plan; `None` for the plan in the record.
+    /// File of the plan; `None` to use the plan in the record.
     pub(crate) plan: Option<PathBuf>,
-    /// `true` for a chart over time.
+    /// `true` to draw a chart over time instead of the path.
     pub(crate) is_over_time: bool,
     /// Names of the signals in the chart.
     pub(crate) signals: Vec<String>,
 }
 
 impl Plot {
-    /// Returns the arguments from the parsed command line.
+    /// Reads the arguments from the parsed command line.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let path = |name: &str| matches.get_one::<PathBuf>(name).cloned();
         let signals: Vec<String> = matches.get_many("signal").into_iter().flatten().cloned().collect();
@@ -35,7 +35,7 @@ impl Plot {
     }
 }
 
-/// Returns the command line of `mdle plot`.
+/// Returns the definition of the command `mdle plot` and its arguments.
 pub(crate) fn plot() -> Command {
     let path = |name: &'static str| Arg::new(name).value_parser(value_parser!(PathBuf));
     Command::new("plot")

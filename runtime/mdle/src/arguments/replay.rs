@@ -7,20 +7,20 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 /// The arguments of `mdle replay`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Replay {
-    /// The record; `-` is standard input.
+    /// File of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// File of the plan; `None` for the plan in the record.
+    /// File of the plan; `None` to use the plan in the record.
     pub(crate) plan: Option<PathBuf>,
-    /// Time of the last turn, as typed; `None` for all turns.
+    /// Time of the last turn to replay, as typed by the user; `None` to replay all turns.
     pub(crate) until: Option<String>,
-    /// `true` if commands step through the turns.
+    /// `true` to step through the turns with commands.
     pub(crate) steps: bool,
-    /// File of the step commands; `None` for standard input.
+    /// File of the step commands; `None` means standard input.
     pub(crate) commands: Option<PathBuf>,
 }
 
 impl Replay {
-    /// Returns the arguments from the parsed command line.
+    /// Reads the arguments from the parsed command line.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         Self {
             log: matches.get_one("log").cloned().unwrap_or_default(),
@@ -32,7 +32,7 @@ impl Replay {
     }
 }
 
-/// Returns the command line of `mdle replay`.
+/// Returns the definition of the command `mdle replay` and its arguments.
 pub(crate) fn replay() -> Command {
     Command::new("replay")
         .about("Re-execute a recorded run and compare it with the record")

@@ -7,9 +7,9 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 /// The arguments of `mdle why`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Why {
-    /// The record; `-` is standard input.
+    /// File of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// File of the plan; `None` for the plan in the record.
+    /// File of the plan; `None` to use the plan in the record.
     pub(crate) plan: Option<PathBuf>,
     /// The question about the record.
     pub(crate) question: Question,
@@ -20,14 +20,14 @@ pub(crate) struct Why {
 /// A question about a record.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Question {
-    /// Asks why the current atom ran at a time; contains the time as typed.
+    /// Asks why the current atom ran at a certain time; contains the time, as typed by the user.
     At(String),
     /// Asks why an atom or behavior did not begin; contains the text that names it.
     Not(String),
 }
 
 impl Why {
-    /// Returns the arguments from the parsed command line.
+    /// Reads the arguments from the parsed command line.
     pub(crate) fn of(matches: &ArgMatches) -> Self {
         let text = |name: &str| matches.get_one::<String>(name).cloned();
         Self {
@@ -39,7 +39,7 @@ impl Why {
     }
 }
 
-/// Returns the command line of `mdle why`.
+/// Returns the definition of the command `mdle why` and its arguments.
 pub(crate) fn why() -> Command {
     Command::new("why")
         .about("Explain what a recorded run did at a time, or why it did not do something")

@@ -1,9 +1,9 @@
-//! An evidence grid: the log-odds that each cell is occupied, computed from sonar pings (Martin and Moravec, the
-//! paper's reference 26; docs/src/navigation.md has the model).
+//! An evidence grid: for each cell, the log-odds that the cell is occupied, computed from sonar pings (Martin and
+//! Moravec, the paper's reference 26). docs/src/navigation.md describes the model.
 
 /// Number of cells along each axis, as in the paper's Fig. 9.
 pub(super) const CELLS: usize = 150;
-/// Edge of a cell, in metres: an inch.
+/// Edge length of a cell, in metres (one inch).
 pub(crate) const CELL: f64 = 0.0254;
 /// Distance from the middle of the grid to its edges, in metres.
 pub(crate) const HALF: f64 = CELL * CELLS as f64 / 2.0;
@@ -11,13 +11,13 @@ pub(crate) const HALF: f64 = CELL * CELLS as f64 / 2.0;
 const MOST: f64 = 5.0;
 /// Half the angle of a sonar's cone, in radians.
 const CONE: f64 = 12.5 * std::f64::consts::PI / 180.0;
-/// Tangent of the half-angle of a wider cone, which contains a sonar's cone despite rounding errors.
+/// Tangent of half the angle of a wider cone. This cone contains a sonar's cone even with rounding errors.
 const WIDER: f64 = 0.25;
 /// Half the depth of an echo's arc, in metres.
 const DEPTH: f64 = 0.05;
-/// Range, in metres, beyond which an echo marks no cell as occupied.
+/// Range, in metres, beyond which an echo does not mark cells as occupied.
 const FARTHEST: f64 = 3.0;
-/// Distance, in metres, up to which a ping without an echo marks cells as free. Beyond it, a smooth wall may
+/// Distance, in metres, up to which a ping without an echo marks cells as free. A smooth wall beyond this distance may
 /// return no echo.
 const SILENT: f64 = 0.5;
 /// Distance, in metres, from which no cell is marked as free.
@@ -38,12 +38,12 @@ pub(crate) struct GridPing {
 /// A square grid, centred on the origin of its coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EvidenceGrid {
-    /// Log-odds of the cells, row by row along the second axis.
+    /// Log-odds of the cells, ordered row by row along the second axis.
     odds: Vec<f64>,
 }
 
 impl EvidenceGrid {
-    /// Returns a grid without evidence, in which all log-odds are 0.
+    /// Creates a grid without evidence, in which all log-odds are 0.
     pub(crate) fn new() -> Self {
         Self { odds: vec![0.0; CELLS * CELLS] }
     }
@@ -62,7 +62,7 @@ impl EvidenceGrid {
         }
     }
 
-    /// Returns a grid with these probabilities, given row by row along the second axis.
+    /// Creates a grid with these probabilities, which are ordered row by row along the second axis.
     pub(super) fn of(probabilities: impl Iterator<Item = f64>) -> Self {
         let odds = |p: f64| libm::log(p / (1.0 - p)).clamp(-MOST, MOST);
         Self { odds: probabilities.map(odds).collect() }
@@ -73,7 +73,7 @@ impl EvidenceGrid {
         cell_at(x, y).and_then(|cell| self.odds.get(cell)).copied().unwrap_or_default()
     }
 
-    /// Returns the log-odds of all cells, row by row along the second axis.
+    /// Returns the log-odds of all cells, ordered row by row along the second axis.
     pub(super) fn odds(&self) -> impl Iterator<Item = f64> {
         self.odds.iter().copied()
     }
@@ -85,19 +85,20 @@ impl EvidenceGrid {
     }
 }
 
-/// Returns the index of the cell at a position, counted row by row along the second axis; `None` outside the grid.
+/// Returns the index of the cell at a position; `None` outside the grid. Cells are ordered row by row along the second
+/// axis.
 pub(super) fn cell_at(x: f64, y: f64) -> Option<usize> {
     let [column, row] = [x, y].map(|at| libm::floor((at + HALF) / CELL));
     let inside = 0.0..CELLS as f64;
     (inside.contains(&column) && inside.contains(&row)).then_some(row as usize * CELLS + column as usize)
 }
 
-/// Returns the position of the centre of a cell along an axis, in metres.
+/// Returns the coordinate of a cell's centre along an axis, in metres.
 pub(super) fn middle(cell: usize) -> f64 {
     (cell as f64 + 0.5) * CELL - HALF
 }
 
-/// Returns the indices, along an axis, of the cells whose centres may lie within `reach` of a position.
+/// Returns the indices, along an axis, of the cells whose centres may be within `reach` of a position.
 fn near(position: f64, reach: f64) -> std::ops::Range<usize> {
     // The conversion to an integer saturates.
     let cell = |at: f64| (libm::floor((at + HALF) / CELL).max(0.0) as usize).min(CELLS);
@@ -105,7 +106,7 @@ fn near(position: f64, reach: f64) -> std::ops::Range<usize> {
 }
 
 /// Returns the change in a cell's log-odds that a ping causes. `x` and `y` are the cell's coordinates relative to the
-/// transducer, in metres; `sin` and `cos` belong to the transducer's direction.
+/// transducer, in metres; `sin` and `cos` are those of the transducer's direction.
 fn evidence(x: f64, y: f64, (sin, cos): (f64, f64), ping: &GridPing) -> f64 {
     let (ahead, aside) = (x * cos + y * sin, y * cos - x * sin);
     // Nine cells in ten lie outside the wider cone or behind the transducer, and need no angle.

@@ -1,5 +1,5 @@
-//! The files of a map: a YAML file in the format of ROS, a greyscale image beside it in which black is occupied, and a
-//! PNG.
+//! The files of a map: a YAML file in the format of ROS; a greyscale image in the same folder, in which black means
+//! occupied; and a PNG.
 
 use std::fs::{self, File};
 use std::io;
@@ -10,17 +10,18 @@ use super::ros_image::{image, pixels, png_pixels};
 use super::saved_map::SavedMap;
 use crate::failure::{Failure, exists, unwritten};
 
-/// New files of a map.
+/// Names of the new files of a map.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct MapFiles {
     yaml: PathBuf,
     image: PathBuf,
-    /// The image as PNG; `None` if it is not wanted.
+    /// PNG file of the image; `None` if it is not requested.
     picture: Option<PathBuf>,
 }
 
 impl MapFiles {
-    /// Returns the files of a map: the YAML file `yaml`, the image beside it and, if given, the PNG `picture`.
+    /// Creates the names of a map's files: the YAML file `yaml`, the image in the same folder and, if given, the PNG
+    /// `picture`.
     ///
     /// # Errors
     /// Fails if the name of the file does not end in `.yaml` or `.yml`, if one of the files exists already, or if a
@@ -43,7 +44,7 @@ impl MapFiles {
         [Some(&self.yaml), Some(&self.image), self.picture.as_ref()].into_iter().flatten().map(PathBuf::as_path)
     }
 
-    /// Saves a map, replacing an earlier version. Each file is written completely or not at all.
+    /// Saves a map, and replaces an earlier version of it. Each file is written completely or not at all.
     ///
     /// # Errors
     /// Fails with a message if a file cannot be written.

@@ -1,21 +1,21 @@
-//! Makes a map from pings, and computes a score of how well the pings' own echoes fit the map.
+//! Makes a map from pings. Also computes a score that tells how well the echoes of these pings fit the map.
 
 use super::grid::{CELLS, EvidenceGrid, GridPing, cell_at};
 use super::matching::{BEFORE_WEIGHT, Echo};
 use super::saved_map::SavedMap;
 
-/// The map of the pings so far.
+/// The map that has been made from the pings so far.
 #[derive(Debug, Clone)]
 pub(crate) struct MapMaker {
     grid: EvidenceGrid,
-    /// Weight of each cell in the score of the pings' own echoes.
+    /// Weight of each cell in the score of the map's own echoes.
     weights: Vec<f64>,
     echoes: u64,
     pings: u64,
 }
 
 impl MapMaker {
-    /// Returns a map without any ping.
+    /// Creates a map without any ping.
     pub(crate) fn new() -> Self {
         Self { grid: EvidenceGrid::new(), weights: vec![0.0; CELLS * CELLS], echoes: 0, pings: 0 }
     }
@@ -33,7 +33,7 @@ impl MapMaker {
         }
     }
 
-    /// Returns the number of pings that were taken.
+    /// Returns the number of pings that have been added.
     pub(crate) const fn pings(&self) -> u64 {
         self.pings
     }

@@ -1,39 +1,39 @@
-//! Finds the pose of a robot in an evidence grid at which the echoes from one turn on the spot fit the grid best
-//! (docs/src/navigation.md).
+//! Finds the pose of a robot in an evidence grid. At this pose, the echoes that the robot received while it turned on
+//! the spot fit the grid best (docs/src/navigation.md).
 
 use mdle_runtime::{Meters, Pose, Radians};
 
 use super::grid::{EvidenceGrid, GridPing};
 
-/// Fraction of a range at which there should be free space.
+/// Fraction of a range at which the space should be free.
 const BEFORE: f64 = 0.6;
-/// Weight of the evidence at that fraction of a range.
+/// Weight of the evidence at the position that should be free.
 pub(super) const BEFORE_WEIGHT: f64 = 0.3;
 /// Steps of the first search, in metres and radians.
 const COARSE: (f64, f64) = (0.10, 3.0 * DEGREE);
 /// Number of angles to either side in the first search.
 const COARSE_ANGLES: i16 = 8;
-/// Steps of the searches around the best pose so far.
+/// Steps, in metres and radians, of the later searches, each around the best pose so far.
 const FINE: [(f64, f64); 3] = [(0.05, 1.5 * DEGREE), (0.025, 0.75 * DEGREE), (0.0125, 0.5 * DEGREE)];
-/// Tolerance, in metres or radians, for a pose at the edge of the search, because adding the steps causes rounding
-/// errors.
+/// Tolerance, in metres or radians, for a pose at the edge of the search. It is needed because adding up the steps
+/// causes rounding errors.
 const ROUNDING: f64 = 1e-9;
 /// A degree, in radians.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
-/// A pose in a grid, and how well the echoes fit the grid at this pose.
+/// A pose in a grid, and a score that tells how well the echoes fit the grid at this pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fit {
     /// Pose, in grid coordinates, at which the robot's odometry was zero.
     pub(crate) origin: Pose,
-    /// Mean evidence for each echo.
+    /// Mean evidence per echo.
     pub(crate) score: f64,
-    /// `true` if the pose is at the edge of the search, so that the best pose may lie outside.
+    /// `true` if the pose is at the edge of the search, so that the best pose may be outside.
     pub(crate) is_at_edge: bool,
 }
 
-/// An echo in the coordinates of its ping: its position, and a position between the transducer and the echo that should
-/// be free.
+/// Two positions in the coordinates of a ping: the position of the echo, and a position between the transducer and the
+/// echo that should be free.
 pub(super) struct Echo {
     pub(super) at: (f64, f64),
     pub(super) before: (f64, f64),
@@ -48,9 +48,9 @@ impl Echo {
     }
 }
 
-/// Finds the pose at which the echoes of `pings` fit the grid best, up to `ways` times 10 cm from `near` along each
-/// axis and up to 24° from the heading of `near`. The pings are in odometry coordinates; the search rotates them about
-/// the origin. Returns `None` if no ping has an echo.
+/// Finds the pose at which the echoes of `pings` fit the grid best. The search covers distances up to `ways` times 10
+/// cm from `near` along each axis, and headings up to 24° from the heading of `near`. The pings are in odometry
+/// coordinates; the search rotates them about the origin. Returns `None` if no ping has an echo.
 pub(crate) fn fit(grid: &EvidenceGrid, pings: &[GridPing], near: Pose, ways: i16) -> Option<Fit> {
     let echoes: Vec<Echo> = pings.iter().filter_map(Echo::of).collect();
     if echoes.is_empty() {
@@ -68,7 +68,7 @@ pub(crate) fn fit(grid: &EvidenceGrid, pings: &[GridPing], near: Pose, ways: i16
     Some(Fit { is_at_edge, ..best })
 }
 
-/// Returns the best fit on a lattice around a pose, or `best` if no fit is better.
+/// Returns the best fit on a lattice of poses around `around`; `best` if no fit is better.
 fn better(
     mut best: Fit,
     around: Pose,
@@ -93,7 +93,7 @@ fn better(
     best
 }
 
-/// Returns the mean evidence for echoes of a robot whose odometry was zero at `origin`.
+/// Returns the mean evidence for the echoes, assuming that the robot's odometry was zero at `origin`.
 fn score(grid: &EvidenceGrid, echoes: &[Echo], origin: &Pose) -> f64 {
     let (sin, cos) = libm::sincos(origin.theta.0);
     let odds = |(x, y): (f64, f64)| grid.odds_at(origin.x.0 + x * cos - y * sin, origin.y.0 + x * sin + y * cos);

@@ -1,5 +1,5 @@
-//! Evidence grids of landmarks, and the search for the pose of a robot in a grid, given the pings from one turn on the
-//! spot (docs/src/navigation.md).
+//! Evidence grids of landmarks, and the search for the pose of a robot in such a grid. The search uses the pings that
+//! the robot took while it turned on the spot (docs/src/navigation.md).
 
 mod grid;
 mod map_files;

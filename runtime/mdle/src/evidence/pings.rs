@@ -1,20 +1,21 @@
-//! Takes the pings of a run from the robot's outputs, each once, in the order in which the sonars fired.
+//! Collects the pings of a run from the robot's outputs. Each ping is taken once, in the order in which the sonars
+//! fired.
 
 use mdle_runtime::{Nanos, Pings, Pose, SONARS, Sensed, SonarId};
 
 use super::grid::GridPing;
 
-/// Converts outputs to pings in grid coordinates, each once.
+/// Converts outputs to pings in grid coordinates; each ping is returned once.
 #[derive(Debug)]
 pub(crate) struct PingOrder {
     /// Pose, in grid coordinates, at which the robot's odometry was zero.
     origin: Pose,
-    /// Time of the last ping taken from each sonar.
+    /// Time of the last ping that was taken from each sonar.
     last: [Option<Nanos>; SONARS],
 }
 
 impl PingOrder {
-    /// Returns the state before the first ping of a run. `origin` is the pose, in grid coordinates, at which the
+    /// Creates the state before the first ping of a run. `origin` is the pose, in grid coordinates, at which the
     /// robot's odometry is zero.
     pub(crate) fn new(origin: Pose) -> Self {
         Self { origin, last: [None; SONARS] }
@@ -36,7 +37,7 @@ impl PingOrder {
         new.into_iter().map(|(.., from, range)| self.placed(&from, range.map(|range| range.0))).collect()
     }
 
-    /// Returns a ping in grid coordinates, given the transducer's pose `from` in odometry coordinates.
+    /// Converts a ping to grid coordinates; `from` is the pose of the transducer in odometry coordinates.
     fn placed(&self, from: &Pose, range: Option<f64>) -> GridPing {
         let (sin, cos) = libm::sincos(self.origin.theta.0);
         let (x, y) = (from.x.0, from.y.0);
@@ -49,7 +50,7 @@ impl PingOrder {
     }
 }
 
-/// Returns the pings after the time `before`; all pings for `None`.
+/// Returns the pings that were taken after the time `before`; all pings if `before` is `None`.
 fn fresh(pings: &Pings, before: Option<Nanos>) -> impl Iterator<Item = &mdle_runtime::Ping> {
     pings.newest_first().take_while(move |ping| before.is_none_or(|before| ping.at > before))
 }

@@ -1,4 +1,4 @@
-//! An evidence grid as the greyscale image of a ROS map, in which black is occupied.
+//! Converts an evidence grid to the greyscale image of a ROS map, in which black means occupied.
 
 use std::path::{Path, PathBuf};
 
@@ -32,7 +32,7 @@ pub(super) fn png_pixels(grid: &EvidenceGrid) -> Result<Vec<u8>, EncodingError> 
     Ok(file)
 }
 
-/// Returns the grey value of each cell, row by row, beginning with the row that has the greatest second coordinate.
+/// Returns the grey values of the cells, row by row. The first row is the one with the greatest second coordinate.
 fn greys(grid: &EvidenceGrid) -> Vec<u8> {
     let cells = (0..CELLS).rev().flat_map(|row| (0..CELLS).map(move |column| (column, row)));
     cells.map(|(column, row)| libm::round(WHITE * (1.0 - grid.probability(column, row))) as u8).collect()

@@ -1,4 +1,5 @@
-//! The map of a landmark as `mdle map` saves it: a YAML file, and the image of the grid beside it.
+//! The map of a landmark in the form in which `mdle map` saves it: a YAML file, and the image of the grid in the same
+//! folder.
 
 use std::path::Path;
 
@@ -12,14 +13,14 @@ use crate::failure::Failure;
 
 /// Maximum size of a file, in bytes.
 const LARGEST: u64 = 1_000_000;
-/// Default pose, in map coordinates, in metres and degrees. A robot begins at this pose to make the map, and is later
-/// searched near it.
+/// Default pose, in map coordinates, in metres and degrees. A robot is at this pose when it begins to make the map;
+/// later, the search for a robot begins near this pose.
 pub(crate) const USUAL_POSE: &str = "-0.75,0,0";
 /// Key of the minimum score in the YAML file.
 const KEY: &str = "least_score";
-/// Default minimum score, for a map whose file lacks the key.
+/// Default minimum score, for maps whose files do not contain the key.
 const USUAL: f64 = 1.7;
-/// Minimum score of a map, as a fraction of the score of the echoes from which the map was made.
+/// Minimum score of a map, as a fraction of the score of the map's own echoes.
 const FRACTION: f64 = 0.7;
 
 /// Reads the pose that is the value of an option.
@@ -32,12 +33,12 @@ pub(crate) fn pose(option: &str, text: &str) -> Result<Pose, Failure> {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SavedMap {
     pub(crate) grid: EvidenceGrid,
-    /// Minimum score of a robot that is at the landmark.
+    /// Minimum score for a robot that is at the landmark.
     pub(crate) least: f64,
 }
 
 impl SavedMap {
-    /// Returns the map of a grid, given the score of the echoes from which the grid was made.
+    /// Creates the map of a grid; `own_score` is the score of the echoes from which the grid was made.
     pub(crate) fn of(grid: EvidenceGrid, own_score: Option<f64>) -> Self {
         let least = own_score.map_or(USUAL, |score| libm::round(score * FRACTION * 100.0) / 100.0);
         Self { grid, least: least.max(0.01) }
@@ -69,7 +70,7 @@ impl SavedMap {
         format!("{KEY}: {}\n", self.least)
     }
 
-    /// Returns the reason why a robot with this fit is not at the landmark; `None` if it is there.
+    /// Returns the reason why a robot with this fit is not at the landmark; `None` if it is at the landmark.
     pub(crate) fn objection(&self, fit: &Fit) -> Option<String> {
         if fit.is_at_edge {
             return Some("the best pose is at the edge of the search".to_owned());

@@ -13,7 +13,7 @@ use crate::failure::{self, Failure};
 use crate::messages::counted;
 use crate::replay;
 
-/// Writes the turns up to `until` as a separate record.
+/// Writes the turns of a record up to the time `until` as a separate record.
 ///
 /// # Errors
 /// Fails if the record cannot be read, or if the new record cannot be written.

@@ -1,4 +1,4 @@
-//! `mdle log export --csv`: the turns of a record as a table.
+//! `mdle log export --csv`: writes the turns of a record as a table.
 
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write};
@@ -38,12 +38,12 @@ pub(super) fn export(log: &Path, file: Option<&Path>) -> Result<ExitCode, Failur
 /// Writer of lines to a file or to standard output.
 pub(super) struct TableWriter {
     out: Box<dyn Write>,
-    /// The file; `None` for standard output.
+    /// The file; `None` means standard output.
     file: Option<PathBuf>,
 }
 
 impl TableWriter {
-    /// Creates `file`, which must not exist yet; uses standard output for `None`.
+    /// Creates `file`, which must not exist yet; `None` means standard output.
     ///
     /// # Errors
     /// Fails if the file cannot be created.
@@ -79,7 +79,7 @@ impl TableWriter {
     }
 }
 
-/// Returns the header line; columns are in SI units.
+/// Returns the header line of the table; columns are in SI units.
 fn head() -> String {
     let mut line = "turn,t,plan,state,x,y,theta,v,omega,bumpers,battery".to_owned();
     for sonar in 0..SONARS {
@@ -115,7 +115,7 @@ fn line(turn: &RecordedTurn, messages: &[Message]) -> String {
     line
 }
 
-/// Returns the cause of a transition, with values and place; `None` for any other message.
+/// Returns the cause of a transition, with its values and its position in the plan; `None` for any other message.
 fn cause(message: &Message) -> Option<String> {
     let transition: serde_json::Value = serde_json::from_str(&message.json).ok()?;
     transition.get("cause")?.as_str().map(str::to_owned)

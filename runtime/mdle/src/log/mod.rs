@@ -1,4 +1,5 @@
-//! `mdle log`: the contents of a record, its first part as a record, and its turns as a table or as a script.
+//! `mdle log`: shows the contents of a record, writes its first part as a record, or writes its turns as a table or as
+//! a script.
 
 mod cut;
 mod export;

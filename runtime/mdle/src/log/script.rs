@@ -1,4 +1,4 @@
-//! `mdle log export --script`: a record as a script of interrupts, for `mdlec trace` and the debugger.
+//! `mdle log export --script`: writes a record as a script of interrupts, for `mdlec trace` and the debugger.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,8 +15,8 @@ use crate::examined::{ExaminedRun, ExaminedTurn, PlanMoment};
 use crate::failure::Failure;
 use crate::replay::{self, WantedPlan};
 
-/// Writes a line for each turn of a record, with the interrupts that its plan evaluated and that fired, and the laws
-/// that completed. `plan` is the file of the plan, if the record does not contain it.
+/// Writes a line for each turn of a record. The line lists the interrupts that the plan evaluated and that fired, and
+/// the laws that completed. `plan` is the file of the plan, if the record does not contain the plan.
 ///
 /// # Errors
 /// Fails if the record or the plan cannot be read, if a script cannot express a turn, or if the file cannot be
@@ -50,7 +50,8 @@ pub(super) fn script(log: &Path, plan: Option<&Path>, file: Option<&Path>) -> Re
     Ok(ExitCode::SUCCESS)
 }
 
-/// Returns the line of a turn. Fails with the text of a condition that is both true and false in the turn.
+/// Returns the line for a turn. If a condition is both true and false in the turn, fails with the text of the
+/// condition.
 fn line(machine: &Machine, turn: &ExaminedTurn, way: Nanometers) -> Result<String, String> {
     let (mut fired, mut completed) = (BTreeMap::new(), BTreeMap::new());
     for moment in &turn.moments {
@@ -86,7 +87,7 @@ fn interrupts<'m>(
 }
 
 /// Records the values of the quarks of a condition. `examined` yields the parts of the condition in the order in which
-/// they were examined; `stuck` counts as a single part.
+/// they were examined; `stuck` is treated as a single part.
 fn parts<'m>(
     machine: &'m Machine,
     condition: &'m Condition,
@@ -103,8 +104,8 @@ fn parts<'m>(
     condition.children().iter().try_for_each(|operand| parts(machine, operand, examined, fired))
 }
 
-/// Records the value of the condition `text` in the turn. Returns the text as an error if the opposite value was
-/// recorded before.
+/// Records the value of the condition `text` in the turn. Fails with the text if the opposite value has already been
+/// recorded.
 fn note<'m>(known: &mut BTreeMap<&'m str, bool>, text: &'m str, is_so: bool) -> Result<(), String> {
     match known.insert(text, is_so) {
         Some(before) if before != is_so => Err(text.to_owned()),

@@ -9,14 +9,14 @@ use crate::arguments::Locate;
 use crate::evidence::{Fit, SavedMap, fit, pose};
 use crate::failure::{self, Failure};
 
-/// Maximum distance of the search from the expected pose, in steps of 10 cm along each axis.
+/// Maximum distance of the search from the expected pose along each axis, in steps of 10 cm.
 const WAYS: i16 = 4;
 
-/// Exit status if the robot is at none of the landmarks.
+/// Exit status if the robot is not at any of the landmarks.
 const NOWHERE: u8 = 1;
 
-/// Prints how well a record fits each map. The list begins with the landmarks at which the robot may be, the best fit
-/// first.
+/// Prints how well a record fits each map. The landmarks at which the robot may be come first, beginning with the best
+/// fit.
 ///
 /// # Errors
 /// Fails if the record or a map cannot be read, or if the record has no echo.

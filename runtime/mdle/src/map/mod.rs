@@ -1,5 +1,5 @@
-//! `mdle map`: the evidence grid of a recorded run, as a ROS map (docs/src/navigation.md). `mdle locate` determines in
-//! which of several maps a robot was.
+//! `mdle map`: writes the evidence grid of a recorded run as a ROS map (docs/src/navigation.md). `mdle locate`
+//! determines in which of several maps a robot was.
 
 mod locate;
 

@@ -16,7 +16,7 @@ use crate::arguments::EarsOption;
 /// Maximum length of a WAV file, in seconds.
 const LONGEST: u32 = 1800;
 
-/// Source of sound that can be opened for several runs.
+/// Source of sound, which can be opened for several runs.
 #[derive(Debug, Clone)]
 pub(crate) enum AudioSource {
     Robot,
@@ -24,15 +24,15 @@ pub(crate) enum AudioSource {
     Raw(RawAudio),
 }
 
-/// Sound in a single run.
+/// Sound of a single run.
 pub(super) enum Audio {
     Robot(Microphones),
-    /// Samples of a file, and the number of samples already taken.
+    /// Samples of a file, and the number of samples that have been taken so far.
     Wav(Arc<[[f32; 2]]>, usize),
     Raw(RawAudio),
 }
 
-/// Samples that a recorder has written and the module has not taken yet.
+/// Samples that a recorder has written and that the module has not taken yet.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RawAudio(Arc<Mutex<RawSamples>>);
 
@@ -44,7 +44,7 @@ struct RawSamples {
 }
 
 impl AudioSource {
-    /// Opens the source of an option.
+    /// Opens the source of sound that an option names.
     ///
     /// # Errors
     /// Fails with a message if the file cannot be used.
@@ -56,7 +56,7 @@ impl AudioSource {
         }
     }
 
-    /// Returns the sound for a run whose robot has these microphones.
+    /// Returns the sound of a run whose robot has these microphones.
     pub(super) fn begin(&self, microphones: &Microphones) -> Audio {
         match self {
             Self::Robot => Audio::Robot(microphones.clone()),
@@ -67,7 +67,7 @@ impl AudioSource {
 }
 
 impl Audio {
-    /// Takes the samples up to this time; `None` after the end of a file.
+    /// Removes and returns the samples up to the time `until`; `None` after the end of a file.
     ///
     /// # Errors
     /// Fails with a message if the recorder has ended.
@@ -127,7 +127,7 @@ fn wav(path: &Path) -> Result<Vec<[f32; 2]>, String> {
     Ok(samples)
 }
 
-/// Returns the pairs of samples of two interleaved channels.
+/// Converts the interleaved samples of two channels to pairs.
 fn pairs(values: &[f32]) -> Vec<[f32; 2]> {
     values.as_chunks::<2>().0.to_vec()
 }
@@ -156,7 +156,7 @@ impl RawAudio {
         thread.map(|_| recorder).map_err(|error| format!("--ears: the system gives no thread: {error}"))
     }
 
-    /// Reads 16-bit samples of two ears, in the byte order of `arecord -f cd`, until the end; returns the
+    /// Reads 16-bit samples of two ears, in the byte order of `arecord -f cd`, until the stream ends. Returns the
     /// reason for the end.
     fn read(&self, mut from: impl Read) -> String {
         let (mut buffer, mut filled) = ([0; 4096], 0);

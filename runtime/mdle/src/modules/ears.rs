@@ -1,5 +1,5 @@
-//! The module `heading` of a robot with microphones: the bearing of a sound, from the delay between two ears
-//! (paper, section III-G).
+//! The module `heading` of a robot with microphones. It publishes the bearing of a sound, computed from the delay
+//! between two ears (paper, section III-G).
 
 use std::collections::VecDeque;
 
@@ -9,17 +9,17 @@ use mdle_sound::{Localizer, RATE, WINDOW};
 
 use super::audio::Audio;
 
-/// Published range; two ears cannot measure a range.
+/// Range that is published, because two ears cannot measure a range.
 const RANGE: Meters = Meters(2.0);
-/// Time, in seconds, for which a bearing is published without confirmation.
+/// Time, in seconds, for which a bearing is published even if no new sound confirms it.
 const REMEMBERED: f64 = 5.0;
-/// Number of turns whose headings are kept, to find the heading in the middle of a window.
+/// Number of turns whose headings are stored. They are needed to find the heading in the middle of a window.
 const TURNS: usize = 200;
 
 /// Time from the middle of a window to its end, in nanoseconds.
 const HALF_A_WINDOW: u64 = WINDOW as u64 * 500_000_000 / RATE as u64;
 
-/// Module that publishes the bearing of a sound.
+/// The module that publishes the bearing of a sound.
 pub(super) struct EarsModule {
     audio: Audio,
     localizer: Localizer,
@@ -28,7 +28,7 @@ pub(super) struct EarsModule {
     range: Out<Meters>,
     /// The newest samples of the left and the right ear.
     samples: VecDeque<[f32; 2]>,
-    /// Headings by odometry, the newest last.
+    /// Headings by odometry; the newest comes last.
     headings: VecDeque<(Nanos, f64)>,
 }
 
@@ -50,7 +50,7 @@ impl EarsModule {
         module
     }
 
-    /// Processes the sound of the turn that ended with the last turn break; returns `false` after the end of the sound.
+    /// Processes the sound of the turn that ended with the last turn break. Returns `false` after the end of the sound.
     fn turn(&mut self, offer: &mut Offer<'_>) -> Result<bool, Fault> {
         let (Some(Radians(theta)), now) = (offer.get(self.theta), offer.now()) else { return Ok(true) };
         let before = self.headings.back().map_or(now, |(before, _)| *before);

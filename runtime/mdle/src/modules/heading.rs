@@ -1,9 +1,9 @@
-//! The module `heading`: bearing and range of a point in odometry coordinates.
+//! The module `heading`, which publishes the bearing and the range of a point in odometry coordinates.
 
 use mdle_engine::{Declare, Fault, In, Module, Out, Relevance, Turn};
 use mdle_runtime::{Meters, Radians, Sensed};
 
-/// Module that publishes the direction and the distance to a point.
+/// The module that publishes the direction and the distance to a point.
 pub(super) struct Heading {
     x: In<Meters>,
     y: In<Meters>,
@@ -12,7 +12,7 @@ pub(super) struct Heading {
 }
 
 impl Heading {
-    /// Declares the module for this point, in metres by odometry.
+    /// Declares the module for the point `(x, y)`, given in metres by odometry.
     pub(super) fn declare(declare: &mut Declare, (x, y): (f64, f64)) -> Self {
         let heading = Self {
             x: declare.setting("x", Meters(x)),

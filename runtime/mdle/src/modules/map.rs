@@ -1,8 +1,8 @@
 //! The modules `pings` and `map` of a run with `--map`, which make an evidence grid while the robot drives
 //! (docs/src/navigation.md).
 //!
-//! `pings` runs in every turn and keeps the pings of the robot's output. `map` adds these pings to the grid in the
-//! background, up to the last turn break (docs/src/engine.md), so that its published values do not depend on the speed
+//! `pings` runs in every turn, and stores the pings of the robot's output. `map` runs in the background, and adds the
+//! pings up to the last turn break to the grid (docs/src/engine.md), so its published values do not depend on the speed
 //! of its thread. At the end of the run, [`MapRun::save`] adds the remaining pings.
 
 use std::collections::VecDeque;
@@ -16,10 +16,10 @@ use crate::failure;
 
 /// Name of the module that makes the map.
 const MAP: &str = "map";
-/// Name of the module that keeps the pings for the map.
+/// Name of the module that stores the pings for the map.
 const PINGS: &str = "pings";
 
-/// The map of a run, shared by the command and the modules.
+/// The map of a run, which the command and the modules share.
 #[derive(Debug, Clone)]
 pub(crate) struct MapRun {
     files: MapFiles,
@@ -31,9 +31,9 @@ pub(crate) struct MapRun {
 #[derive(Debug)]
 struct MapPings {
     order: PingOrder,
-    /// Pings that are not in the map yet, with the times of their turns.
+    /// Pings that have not been added to the map yet, with the times of their turns.
     waiting: VecDeque<(Nanos, GridPing)>,
-    /// Number of pings so far.
+    /// Number of pings that have been heard so far.
     count: i64,
     /// `true` once the robot has made a turn.
     has_begun: bool,
@@ -42,7 +42,7 @@ struct MapPings {
 /// Outcome of saving the map of a whole run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Saved {
-    /// The map is saved.
+    /// The map has been saved.
     Map,
     /// No sonar has pinged, so there is no map.
     NoPing,
@@ -54,7 +54,7 @@ pub(crate) enum Saved {
 #[derive(Debug)]
 struct Making {
     maker: MapMaker,
-    /// `true` once the map of the whole run was saved.
+    /// `true` once the map of the whole run has been saved.
     is_over: bool,
 }
 
@@ -63,7 +63,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl MapRun {
-    /// Returns the map of a run that begins at this pose, for these files.
+    /// Creates the map of a run that begins at the pose `origin`. The map will be saved to `files`.
     pub(crate) fn new(origin: Pose, files: MapFiles) -> Self {
         let making = Making { maker: MapMaker::new(), is_over: false };
         let heard = MapPings { order: PingOrder::new(origin), waiting: VecDeque::new(), count: 0, has_begun: false };
@@ -77,7 +77,7 @@ impl MapRun {
         library.background(MAP, move |declare| MapModule::declare(declare, map.clone()));
     }
 
-    /// Adds the pings of the turns up to this time to the map; returns the map, locked.
+    /// Adds the pings of the turns up to the time `until` to the map. Returns the locked map.
     fn take(&self, until: Nanos) -> MutexGuard<'_, Making> {
         let mut making = locked(&self.making);
         // The list of pings is locked only while a ping is removed, so that turns wait only briefly.
@@ -88,7 +88,7 @@ impl MapRun {
         making
     }
 
-    /// Saves the map of the pings up to this time, unless the run is over; returns `false` if it saves none.
+    /// Saves the map of the pings up to the time `until`, unless the run is over. Returns `false` if nothing was saved.
     fn save_until(&self, until: Nanos) -> Result<bool, String> {
         self.save_made(&self.take(until))
     }
@@ -109,8 +109,8 @@ impl MapRun {
         })
     }
 
-    /// Saves a map; returns `false` if the run is over or the map has no ping, so that nothing is saved. The map stays
-    /// locked, so that two threads never write its files at the same time.
+    /// Saves a map. Returns `false` if nothing was saved, because the run is over or the map has no ping. The map stays
+    /// locked meanwhile, so that two threads never write its files at the same time.
     fn save_made(&self, making: &Making) -> Result<bool, String> {
         if making.is_over || making.maker.pings() == 0 {
             return Ok(false);
@@ -119,7 +119,7 @@ impl MapRun {
     }
 }
 
-/// Module that keeps the pings of the robot.
+/// The module that stores the pings of the robot.
 struct PingsModule {
     run: MapRun,
     count: Out<i64>,
@@ -146,7 +146,7 @@ impl Module<Sensed> for PingsModule {
     }
 }
 
-/// Module that makes the map, and saves it on command.
+/// The module that makes the map and saves it on command.
 struct MapModule {
     run: MapRun,
     save: In<bool>,
@@ -177,7 +177,7 @@ impl MapModule {
         module
     }
 
-    /// Adds the pings up to the last turn break to the map, and carries out a command to save it.
+    /// Adds the pings up to the last turn break to the map, and carries out a command to save the map.
     fn turn(&mut self, offer: &mut Offer<'_>) {
         let command = offer.reading(self.save).map(|reading| reading.at);
         if offer.get(self.save) == Some(true) && command != self.commanded {

@@ -27,7 +27,8 @@ pub(crate) fn shipped(library: &mut Library<Sensed>) {
     library.registered("sensors", Sensors::declare);
 }
 
-/// Registers the modules that the `mdle.toml` and the options name; an option replaces a module of the same name.
+/// Registers the modules that the `mdle.toml` and the options name. If both name a module with the same name, the
+/// option's module is used.
 ///
 /// # Errors
 /// Fails if a name in the `mdle.toml` is not a module name, or is already taken.
@@ -50,7 +51,7 @@ pub(crate) fn of_settings(
     Ok(())
 }
 
-/// Returns the modules that the `mdle.toml` names and no option replaces.
+/// Returns the modules that the `mdle.toml` names and that no option replaces.
 pub(crate) fn only_of_settings<'s>(
     settings: &'s Settings,
     arguments: &RunArguments,
@@ -62,7 +63,7 @@ pub(crate) fn only_of_settings<'s>(
     settings.modules().filter(move |module| !is_replaced(module.name))
 }
 
-/// The sound of a run, and the radius of the head that hears it, in metres.
+/// The sound of a run, and the radius, in metres, of the head that hears the sound.
 #[derive(Debug, Clone)]
 pub(crate) struct SoundInput {
     pub(crate) source: AudioSource,

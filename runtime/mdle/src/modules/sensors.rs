@@ -1,5 +1,5 @@
-//! The module `sensors`: publishes readings of the robot, for modules without access to its output, such as child
-//! processes.
+//! The module `sensors`, which publishes readings of the robot. Modules that have no access to the robot's output need
+//! it, such as child processes.
 
 use mdle_engine::{Declare, Fault, Module, Out, Relevance, Turn};
 use mdle_runtime::capability::{Bumpers as _, SonarRing as _};
@@ -8,7 +8,7 @@ use mdle_runtime::{Meters, MetersPerSecond, Radians, RadiansPerSecond, Sensed, S
 /// Number of sonars.
 const SONARS: u8 = 16;
 
-/// Module that publishes the readings of the robot.
+/// The module that publishes the readings of the robot.
 pub(super) struct Sensors {
     x: Out<Meters>,
     y: Out<Meters>,

@@ -1,5 +1,5 @@
-//! The file of landmarks beside a graph: the direction of each landmark's axes on the floor, its place, and its map
-//! (docs/src/navigation.md).
+//! The file of landmarks beside a graph. It contains, for each landmark, the direction of its axes on the floor, its
+//! position, and its map (docs/src/navigation.md).
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -31,17 +31,17 @@ struct Landmark {
     name: Spanned<String>,
     /// Direction of the landmark's first axis on the floor.
     axis: Spanned<String>,
-    /// Floor position of a robot that is at the landmark.
+    /// Position on the floor of a robot that is at the landmark.
     place: Option<Spanned<String>>,
-    /// File of the landmark's map, relative to the folder of this file; `None` if it has no map.
+    /// File of the landmark's map, relative to the folder of this file; `None` if the landmark has no map.
     map: Option<PathBuf>,
-    /// Pose, in map coordinates, of a robot that is at the landmark and heads along the landmark's first axis; `None`
-    /// for the default pose.
+    /// Pose, in map coordinates, of a robot that is at the landmark and whose heading is along the landmark's first
+    /// axis; `None` for the default pose.
     at: Option<Spanned<String>>,
 }
 
 impl Landmarks {
-    /// Reads the file. Unless `is_named` is `true`, the file may be missing.
+    /// Reads the file. If `is_named` is `false`, the file may be missing.
     ///
     /// # Errors
     /// Fails with a message if the file cannot be read, has errors, or names a landmark that the graph does not
@@ -57,7 +57,7 @@ impl Landmarks {
         Self::parse(&text, known).map_err(|(line, sentence)| format!("{shown}:{line}: {sentence}"))
     }
 
-    /// Reads the text of the file; an error contains its line number.
+    /// Parses the text of the file. An error contains its line number.
     fn parse(text: &str, known: &[&str]) -> Result<Self, (usize, String)> {
         let line = |place: usize| text.get(..place).unwrap_or_default().matches('\n').count() + 1;
         let read: Result<Self, _> = toml::from_str(text);
@@ -110,8 +110,8 @@ impl Landmarks {
         maps.collect()
     }
 
-    /// Returns the known places of landmarks, turned for a route that begins at a landmark whose first axis has the
-    /// direction `begins`, in degrees.
+    /// Returns the known positions of landmarks, in the coordinates of the route. `begins` is the direction, in
+    /// degrees, of the first axis of the landmark at which the route begins.
     pub(super) fn places(&self, begins: f64) -> Vec<LandmarkPlace> {
         let (sin, cos) = libm::sincos(Radians::from_degrees(begins).0);
         let places = self.landmark.iter().filter_map(|landmark| {
@@ -122,14 +122,14 @@ impl Landmarks {
         places.collect()
     }
 
-    /// Returns the direction of a landmark's first axis on the floor, in degrees; 0 if the file does not give it.
+    /// Returns the direction of a landmark's first axis on the floor, in degrees; 0 if the file does not contain it.
     pub(super) fn axis(&self, name: &str) -> f64 {
         let landmark = self.landmark.iter().find(|landmark| landmark.name.get_ref() == name);
         landmark.and_then(|landmark| Quantity::Angle.read(landmark.axis.get_ref(), "deg").ok()).unwrap_or_default()
     }
 }
 
-/// Reads a place on the floor, in metres.
+/// Parses a position on the floor, in metres.
 fn point(text: &str) -> Result<(f64, f64), String> {
     let (x, y) = text.split_once(',').ok_or("expected x, y: two numbers in metres, as in `7.45, 0.4`")?;
     let metres = |text: &str| Quantity::Length.read(text.trim(), "m");

@@ -89,7 +89,7 @@ fn call(arguments: &Navigate, options: Vec<OsString>) -> Call {
     Call { words: arguments.words.clone(), options, read: Vec::new(), recorded, later_path: None }
 }
 
-/// Finds the route, from each landmark to the next.
+/// Finds the route that leads from each landmark to the next.
 fn route<'g>(graph: &'g LandmarkGraph, arguments: &Navigate) -> Result<Vec<&'g Edge>, Failure> {
     let (mut edges, mut from) = (Vec::new(), arguments.from.as_str());
     for to in arguments.to.split(',') {
@@ -99,7 +99,7 @@ fn route<'g>(graph: &'g LandmarkGraph, arguments: &Navigate) -> Result<Vec<&'g E
     Ok(edges)
 }
 
-/// Finds the route from one landmark to another.
+/// Finds the route from one landmark to another; the result lists the edges of the graph.
 fn part<'g>(
     graph: &'g LandmarkGraph,
     Navigate { graph: file, .. }: &Navigate,
@@ -132,7 +132,8 @@ fn words(route: &[&Edge]) -> String {
     first.to_owned() + &rest.collect::<String>()
 }
 
-/// Compiles the plans of a route, and checks that each can end. Odometry begins in the frame of the first landmark.
+/// Compiles the plans of a route, and checks that each of them can end. Odometry begins in the frame of the first
+/// landmark.
 fn legs(route: &[&Edge], landmarks: &Landmarks, arguments: &Navigate, target: &Target) -> Result<Vec<Leg>, Failure> {
     let begins = landmarks.axis(&arguments.from);
     let legs = route.iter().enumerate().map(|(number, edge)| {

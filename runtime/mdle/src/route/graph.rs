@@ -1,4 +1,5 @@
-//! A graph of landmarks: plans whose labels name the landmarks between which they lead (paper, section IV-B).
+//! A graph of landmarks. Its edges are plans, whose labels name two landmarks: the start and the destination of the
+//! plan (paper, section IV-B).
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -16,7 +17,7 @@ pub(crate) struct Edge {
 pub(crate) struct LandmarkGraph(Vec<Edge>);
 
 impl LandmarkGraph {
-    /// Returns the graph of labelled plans. Each pair contains a label, such as `Γ_from^to`, and the name of the plan
+    /// Creates the graph of labelled plans. Each pair contains a label, such as `Γ_from^to`, and the name of the plan
     /// with this label. A plan whose label does not name two landmarks is not an edge.
     pub(crate) fn of(labels: Vec<(String, String)>) -> Self {
         let edge = |(label, plan): (String, String)| {
@@ -26,7 +27,7 @@ impl LandmarkGraph {
         Self(labels.into_iter().filter_map(edge).collect())
     }
 
-    /// Returns the names of the landmarks, each once, in the order of the file.
+    /// Returns the names of the landmarks in the order of the file; each name is listed once.
     pub(crate) fn landmarks(&self) -> Vec<&str> {
         let mut names = Vec::new();
         for name in self.0.iter().flat_map(|edge| [&*edge.from, &*edge.to]) {
@@ -37,8 +38,8 @@ impl LandmarkGraph {
         names
     }
 
-    /// Returns a route with the fewest edges; if there are several, the one whose edges come first in the file. Returns
-    /// `None` if there is no route.
+    /// Returns a route with the fewest edges; `None` if there is no route. Among several such routes, it is the one
+    /// whose edges come first in the file.
     pub(crate) fn route(&self, from: &str, to: &str) -> Option<Vec<&Edge>> {
         let mut came_by: BTreeMap<&str, Option<&Edge>> = BTreeMap::from([(from, None)]);
         let mut waiting = VecDeque::from([from]);
@@ -60,7 +61,7 @@ impl LandmarkGraph {
         Some(edges)
     }
 
-    /// Returns the landmarks to which routes lead from this one, in the order of the file.
+    /// Returns the landmarks that can be reached from this one by a route, in the order of the file.
     pub(crate) fn reachable(&self, from: &str) -> Vec<&str> {
         let reaches = |to: &&str| *to != from && self.route(from, to).is_some();
         self.landmarks().into_iter().filter(reaches).collect()

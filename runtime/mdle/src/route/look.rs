@@ -1,5 +1,5 @@
-//! The look around at a landmark: a robot turns once on the spot, recognizes the landmark by the evidence grids of all
-//! landmarks, and measures the position of the landmark's axes (docs/src/navigation.md).
+//! The look around at a landmark: the robot turns once on the spot, recognizes the landmark with the evidence grids of
+//! all landmarks, and measures the directions of the landmark's axes (docs/src/navigation.md).
 
 use std::path::Path;
 
@@ -13,11 +13,11 @@ use crate::failure::{self, Failure};
 
 /// Name of the plan of a look around.
 pub(super) const LOOK: &str = "LookAround";
-/// Maximum distance of the search from the expected pose of a robot that has arrived, in steps of 10 cm along each
-/// axis.
+/// Maximum distance of the search from the expected pose along each axis, in steps of 10 cm, for a robot that has
+/// driven to the landmark.
 const WAYS: i16 = 6;
-/// Minimum margin by which another landmark's score must exceed the score of the expected landmark to show that the
-/// robot is not at the expected landmark.
+/// Minimum margin by which the score of another landmark must exceed the score of the expected landmark. With a larger
+/// margin, the robot is not at the expected landmark.
 const MARGIN: f64 = 0.6;
 
 /// The map of a landmark.
@@ -27,12 +27,13 @@ pub(crate) struct LandmarkMap {
     /// Angle, in degrees, from the first axis of the landmark where the route begins to the first axis of this
     /// landmark.
     pub(crate) turned: f64,
-    /// Pose, in map coordinates, of a robot that is at the landmark and heads along the landmark's first axis.
+    /// Pose, in map coordinates, of a robot that is at the landmark and whose heading is along the landmark's first
+    /// axis.
     pub(crate) at: Pose,
     pub(crate) map: SavedMap,
 }
 
-/// The compiled plan of a look around, and the maps with which landmarks are recognized.
+/// The compiled plan of a look around, and the maps for recognizing landmarks.
 pub(crate) struct LookPlan {
     pub(crate) machine: Machine,
     pub(crate) input: Input,
@@ -58,7 +59,7 @@ impl LookPlan {
     }
 }
 
-/// Echoes that a robot hears while it turns at a landmark.
+/// Echoes that a robot has received while it turned at a landmark.
 pub(super) struct LookEchoes {
     /// Name of the landmark at which the robot should be.
     expected: String,
@@ -75,13 +76,13 @@ pub(super) struct LookEchoes {
 pub(super) struct Stand {
     /// Offset of the robot from its expected pose in the landmark's map, along the axes of the map.
     pub(super) off: (Meters, Meters),
-    /// Heading drift of odometry since the route began.
+    /// Drift of the odometry heading since the route began.
     pub(super) drift: Radians,
 }
 
 impl LookEchoes {
-    /// Begins the look around of a robot that should be at the landmark `expected`. `driven` is the output with which
-    /// the robot arrived there, or `None` if it was placed there.
+    /// Begins the look around of a robot that should be at the landmark `expected`. `driven` is the output at the
+    /// robot's arrival; `None` if the robot was placed there.
     pub(super) fn at(expected: &str, driven: Option<&Sensed>) -> Self {
         let mut order = PingOrder::new(Pose::ORIGIN);
         if let Some(y) = driven {
@@ -102,16 +103,16 @@ impl LookEchoes {
         self.here
     }
 
-    /// Takes the output of a turn.
+    /// Stores the echoes in the output of a turn.
     pub(super) fn take(&mut self, y: &Sensed) {
         self.here = y.odometry;
         self.pings.extend(self.order.take(y));
     }
 
-    /// Returns the position of the robot at the landmark. `drift` is the approximate heading drift of odometry.
+    /// Returns the position of the robot at the landmark. `drift` is the approximate drift of the odometry heading.
     ///
     /// # Errors
-    /// Fails with a message if the robot is not at the landmark, or if no sonar heard anything.
+    /// Fails with a message if the robot is not at the landmark, or if no sonar received an echo.
     pub(super) fn stand(&self, maps: &[LandmarkMap], drift: Radians) -> Result<Stand, String> {
         let expected = Printable(&self.expected);
         let pings: Vec<GridPing> = self.pings.iter().map(|ping| self.around_the_robot(ping)).collect();
@@ -141,13 +142,14 @@ impl LookEchoes {
         Ok(Stand { off, drift: Radians(axis - Radians::from_degrees(*turned).0).wrapped() })
     }
 
-    /// Returns a ping relative to the robot's position, because the search rotates pings about the origin.
+    /// Converts a ping to coordinates relative to the robot's position, because the search rotates pings about the
+    /// origin.
     fn around_the_robot(&self, ping: &GridPing) -> GridPing {
         GridPing { x: ping.x - self.here.x.0, y: ping.y - self.here.y.0, ..*ping }
     }
 }
 
-/// Returns the best fit among the landmarks at which the robot may be; `None` if there is none.
+/// Returns the best fit among the landmarks at which the robot may be; `None` if there is no such landmark.
 fn best<'f>(fits: &'f [(&'f LandmarkMap, Fit)]) -> Option<&'f (&'f LandmarkMap, Fit)> {
     let fits = fits.iter().filter(|(landmark, fit)| landmark.map.objection(fit).is_none());
     fits.reduce(|best, other| if other.1.score > best.1.score { other } else { best })

@@ -1,5 +1,5 @@
-//! Routes between landmarks: the graph of plans, the legs of a route, the look around at a landmark, the reckoning by
-//! odometry, and the pilot that drives the legs.
+//! Routes between landmarks: the graph of plans, the legs of a route, the look around at a landmark, dead reckoning,
+//! and the pilot that drives the legs.
 
 mod graph;
 mod look;
@@ -25,14 +25,14 @@ pub(crate) struct Route {
     pub(crate) legs: Vec<Leg>,
     /// The look around at landmarks that have maps; `None` if no landmark has a map.
     pub(crate) look: Option<LookPlan>,
-    /// The known places of landmarks.
+    /// The known positions of landmarks.
     pub(crate) places: Vec<LandmarkPlace>,
 }
 
-/// A leg of a route: the plan of an edge in the frame of the landmark where it begins, compiled.
+/// A leg of a route: the compiled plan of an edge, in the frame of the landmark at which the leg begins.
 pub(crate) struct Leg {
     pub(crate) edge: Edge,
-    /// Direction of the frame relative to the heading at the start of the run, in degrees.
+    /// Direction of the frame in degrees, relative to the heading at the start of the run.
     pub(crate) turned: f64,
     /// File of the graph.
     pub(crate) graph: PathBuf,
@@ -42,7 +42,7 @@ pub(crate) struct Leg {
     pub(crate) input: Input,
 }
 
-/// Returns the text of the plan of a leg, in a frame that is turned by this angle, in degrees.
+/// Returns the text of a leg's plan, in a frame that is turned by `turned` degrees.
 fn leg_text(name: &str, plan: &str, turned: f64, graph: &Path) -> String {
     let file = graph.file_name().unwrap_or_default().display();
     format!("use \"{file}\"\n\n{{ {name}\n  FRAME {turned}deg {plan}\n}}\n")

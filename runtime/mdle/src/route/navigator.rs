@@ -1,4 +1,4 @@
-//! The pilot of a route: an engine that runs one plan after the other, from landmark to landmark.
+//! The pilot of a route: an engine that runs one plan after the other and so drives from landmark to landmark.
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
@@ -22,7 +22,7 @@ use crate::recorded_files;
 /// A leg that is ready to run.
 struct ReadyLeg<A: EngineAlphabet> {
     edge: Edge,
-    /// Direction of the frame relative to the heading at the start of the run, in degrees.
+    /// Direction of the frame in degrees, relative to the heading at the start of the run.
     turned: f64,
     graph: PathBuf,
     target: Arc<Target>,
@@ -38,15 +38,15 @@ struct ReadyLook<'l, A: EngineAlphabet> {
 /// The pilot of a route.
 struct Navigator<'l, A: EngineAlphabet> {
     engine: Engine<A>,
-    /// The current leg, and the legs after it.
+    /// The current leg, followed by the remaining legs.
     legs: VecDeque<&'l ReadyLeg<A>>,
     look: Option<&'l ReadyLook<'l, A>>,
-    /// Echoes of the current look around; `None` if the robot does not look around.
+    /// Echoes of the current look around; `None` if the robot is not looking around.
     heard: Option<LookEchoes>,
     reckoning: Reckoning<'l>,
-    /// Heading drift of odometry, as measured at the last landmark with a map.
+    /// Drift of the odometry heading, as measured at the last landmark that has a map.
     drift: Radians,
-    /// Continuation of the run after the last turn; relevant if a plan ended in that turn.
+    /// Continuation of the run after the last turn. It is used only if a plan ended in that turn.
     after: AfterPlan,
     messages: Vec<String>,
 }
@@ -85,7 +85,7 @@ fn ready_look<'l, A: EngineAlphabet>(look: &'l LookPlan, target: &Target) -> Res
 }
 
 impl<A: EngineAlphabet> ReadyLook<'_, A> {
-    /// Returns `true` if there is a map of this landmark.
+    /// Returns `true` if this landmark has a map.
     fn knows(&self, landmark: &str) -> bool {
         self.maps.iter().any(|map| map.name == landmark)
     }
@@ -100,9 +100,9 @@ fn ready<A: EngineAlphabet>(leg: &Leg, target: &Arc<Target>) -> Result<ReadyLeg<
 }
 
 impl<A: EngineAlphabet> ReadyLeg<A> {
-    /// Returns the plan of the leg for a robot with this heading by odometry, whose heading drift is `drift`. The plan
-    /// is compiled for this heading, because direction 0 of a plan that begins during a run is the heading with which
-    /// it begins. The texts of the plan are those that were read before the run.
+    /// Returns the plan of the leg for a robot with this heading by odometry; `drift` is the drift of this heading. The
+    /// plan is compiled for this heading, because direction 0 of a plan that begins during a run is the heading at its
+    /// beginning. The texts of the plan were read before the run.
     fn plan_at(&self, heading: Radians, drift: Radians) -> Result<StoredPlan<A>, String> {
         let turned = libm::round((self.turned + drift.degrees() - heading.degrees()) * 100.0) / 100.0;
         let name = &self.plan.name;
@@ -136,8 +136,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         navigator
     }
 
-    /// Begins a look around if the landmark has a map, and returns the plan of the look around. Otherwise reports that
-    /// the robot is at the landmark, and returns `None`.
+    /// Begins a look around if the landmark has a map, and returns the plan of the look around. Otherwise, reports that
+    /// the robot is at the landmark and returns `None`.
     fn stands(&mut self, landmark: &str, driven: Option<&Sensed>) -> Option<&'l StoredPlan<A>> {
         let Some(look) = self.look.filter(|look| look.knows(landmark)) else {
             self.reckoning.is_at(landmark, driven.map_or(Pose::ORIGIN, |y| y.odometry));
@@ -148,7 +148,7 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Some(&look.plan)
     }
 
-    /// Begins the next plan after a plan has ended; returns `false` if there is no next plan.
+    /// Begins the next plan after a plan has ended. Returns `false` if there is no next plan.
     ///
     /// # Errors
     /// Fails with a message if the robot is not where it should be, or if the next plan cannot begin.
@@ -168,8 +168,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(true)
     }
 
-    /// Ends a leg, and returns the plan of the look around at its end. Without a look around, checks that no other
-    /// landmark is nearer by odometry, and returns `None`.
+    /// Ends a leg. If the landmark has a map, returns the plan of the look around. Otherwise, checks by odometry that
+    /// no other landmark is nearer, and returns `None`.
     fn arrives(&mut self, y: &Sensed, transitions: &Transitions) -> Result<Option<&'l StoredPlan<A>>, String> {
         let Some(leg) = self.legs.pop_front() else { return Ok(None) };
         let Edge { from, to, plan } = &leg.edge;
@@ -183,7 +183,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(self.stands(to, Some(y)))
     }
 
-    /// Evaluates a look around: checks that the robot is where it should be, and updates the heading drift of odometry.
+    /// Evaluates a look around: checks that the robot is where it should be, and updates the drift of the odometry
+    /// heading.
     ///
     /// # Errors
     /// Fails with a message if the look around was interrupted, or if the robot is not at the landmark.
@@ -205,8 +206,8 @@ impl<'l, A: EngineAlphabet<Output = Sensed>> Navigator<'l, A> {
         Ok(())
     }
 
-    /// Returns the operands of the plan's own condition if this condition ended the plan of an edge; `None` if the plan
-    /// ended with its last element.
+    /// Returns the fired operands of the plan's own condition if this condition ended the plan of an edge; `None` if
+    /// the plan ended because its last element ended.
     fn cut_short(&self, edge: &str, transitions: &Transitions) -> Option<String> {
         let (last, operands) = transitions.iter().last()?;
         let plan = self.engine.machine()?.plan();

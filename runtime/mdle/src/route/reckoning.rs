@@ -1,38 +1,38 @@
-//! Dead reckoning: the floor position of the robot by odometry, which distinguishes landmarks without maps
-//! (docs/src/navigation.md).
+//! Dead reckoning: computes the position of the robot on the floor by odometry, in order to distinguish landmarks
+//! without maps (docs/src/navigation.md).
 
 use mdle_runtime::{Meters, Pose, Printable, Radians};
 
-/// The place of a landmark on the floor.
+/// The position of a landmark on the floor.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LandmarkPlace {
     /// Name of the landmark.
     pub(crate) name: String,
-    /// Floor position, in axes parallel to those of the first landmark of the route.
+    /// Position on the floor; the axes are parallel to the axes of the first landmark of the route.
     pub(crate) at: (Meters, Meters),
 }
 
-/// The last landmark at which the robot was, and the pose that odometry measured there.
+/// The last landmark at which the robot was, and the pose by odometry that the robot had there.
 #[derive(Debug)]
 pub(super) struct Reckoning<'p> {
     places: &'p [LandmarkPlace],
-    /// Place of the last landmark, and the robot's pose there by odometry; `None` if the place is not known.
+    /// Position of the last landmark, and the robot's pose there by odometry; `None` if the position is not known.
     last: Option<((Meters, Meters), Pose)>,
 }
 
 impl<'p> Reckoning<'p> {
-    /// Returns the reckoning of a robot that has not been at a landmark, among landmarks with these places.
+    /// Creates the reckoning of a robot that has not been at any of these landmarks yet.
     pub(super) fn new(places: &'p [LandmarkPlace]) -> Self {
         Self { places, last: None }
     }
 
-    /// Records that the robot is at a landmark, with this pose by odometry.
+    /// Records that the robot is at a landmark; `here` is its pose by odometry.
     pub(super) fn is_at(&mut self, landmark: &str, here: Pose) {
         self.last = self.place(landmark).map(|place| (place.at, here));
     }
 
-    /// Checks that no landmark is nearer to the robot than the expected one. `drift` is the heading drift of odometry.
-    /// Checks nothing if the place of this landmark or of the last one is unknown.
+    /// Checks that no landmark is nearer to the robot than the expected one. `drift` is the drift of the odometry
+    /// heading. Checks nothing if the position of the expected landmark or of the last landmark is unknown.
     ///
     /// # Errors
     /// Fails with a message that names the landmark at which the robot is.

@@ -17,19 +17,19 @@ const MDLE: &str = "mdle run SCENARIO.toml";
 pub(super) struct ScenarioOptions {
     pub(super) seed: Option<u64>,
     pub(super) timeout: Option<Duration>,
-    /// File of the log. If its name is the name of a record, the names of the robots' records are derived from it.
+    /// File of the log. For records, the names of the robots' records are derived from this name.
     pub(super) log: Option<PathBuf>,
-    /// The command that repeats the run, without the files that it writes.
+    /// Command that repeats the run without writing its files.
     pub(super) command: String,
     /// File of the table of poses.
     pub(super) trail: Option<PathBuf>,
     /// File of the picture.
     pub(super) plot: Option<PathBuf>,
-    /// File of the picture of the paths driven under `path` and `Follow`.
+    /// File of a picture of the paths that were driven under `path` and `Follow`.
     pub(super) trips: Option<PathBuf>,
-    /// Folder of the paths that robots record.
+    /// Folder for the paths that robots record.
     pub(super) recorded_paths: Option<PathBuf>,
-    /// Number of threads for a crowd; `None` for one thread per processor.
+    /// Number of threads for a crowd; `None` means one thread per processor.
     pub(super) threads: Option<usize>,
 }
 
@@ -38,7 +38,7 @@ impl ScenarioOptions {
     /// it from a file.
     ///
     /// # Errors
-    /// Fails if an option is unknown, has a wrong value, or applies only to a single plan, or if the options ask for
+    /// Fails if an option is unknown, has a wrong value, or applies only to a single plan, or if the options request
     /// help.
     pub(super) fn read(run: &RunArguments, program: Option<Program<'_>>) -> Result<Self, Failure> {
         let of_a_plan = [
@@ -158,7 +158,7 @@ fn command(name: &str) -> Command {
         )
 }
 
-/// Reads the name of a log: `.mcap` for records, `.jsonl` or no extension for JSON lines.
+/// Reads the name of a log file. The extension `.mcap` means records; `.jsonl` or no extension means JSON lines.
 fn log(text: &str) -> Result<PathBuf, String> {
     let path = PathBuf::from(text);
     let is_known = is_record(&path) || path.extension().is_none_or(|ending| ending.eq_ignore_ascii_case("jsonl"));

@@ -1,5 +1,5 @@
-//! Scenarios inside executables: `mdlec SCENARIO.toml --target sim` copies all files that a scenario reads into an
-//! executable, which runs the scenario as `mdle run` does.
+//! Scenarios inside executables. `mdlec SCENARIO.toml --target sim` copies all files that a scenario reads into an
+//! executable, which runs the scenario in the same way as `mdle run`.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -16,8 +16,7 @@ use crate::arguments::{ParsedCommand, parse};
 use crate::failure::Failure;
 use crate::modules;
 
-/// Returns the names and contents of all files that the scenario in the file at `path` reads, the scenario's own file
-/// first.
+/// Returns the names and contents of all files that the scenario at `path` reads; the scenario's own file comes first.
 ///
 /// # Errors
 /// Fails if the scenario cannot be run, or if the name of a file is not UTF-8; prints the error and returns the exit
@@ -46,8 +45,8 @@ fn read(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     own.into_iter().map(named).collect()
 }
 
-/// Runs the scenario in these files, as [`scenario_files`] returns them, with the options of this process, as
-/// `mdle run` does; returns the exit status.
+/// Runs a scenario in the same way as `mdle run`, with the options of this process. `files` contains the files that
+/// [`scenario_files`] has returned. Returns the exit status.
 #[must_use]
 pub fn run_scenario(program: Program<'_>, files: &[(&str, &[u8])]) -> ExitCode {
     run(program, files).unwrap_or_else(Failure::tell)

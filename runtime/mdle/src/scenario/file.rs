@@ -1,4 +1,4 @@
-//! A scenario file: its keys and values, as written (docs/src/many_robots.md).
+//! The contents of a scenario file: its keys and values, as written (docs/src/many_robots.md).
 
 use std::ops::Range;
 use std::path::PathBuf;
@@ -28,13 +28,13 @@ pub(super) struct ScenarioText {
     pub(super) period: Option<At<String>>,
     #[serde(default)]
     pub(super) link: LinkText,
-    /// The robots, in the order in which they move.
+    /// The robots of the scenario, in the order in which they move.
     #[serde(default)]
     pub(super) robot: Vec<RobotText>,
     /// Plans that robots send each other.
     #[serde(default)]
     pub(super) sent_plan: Vec<SentPlanText>,
-    /// A crowd instead of robots with names; `None` if the scenario has no crowd.
+    /// A crowd, which takes the place of robots with names; `None` if the scenario has no crowd.
     pub(super) crowd: Option<CrowdText>,
 }
 
@@ -46,7 +46,7 @@ pub(super) struct CrowdText {
     pub(super) robots: At<u64>,
     /// File of the plan that each robot runs, relative to the folder of the scenario.
     pub(super) file: At<PathBuf>,
-    /// Name of the plan, for a file with several plans.
+    /// Name of the plan to run, for a file with several plans.
     pub(super) plan: Option<At<String>>,
     pub(super) body: Option<At<String>>,
     /// Distance between two robots at the start, as written.
@@ -57,7 +57,7 @@ pub(super) struct CrowdText {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct LinkText {
-    /// Transmission time of a state, as written: a time, or a minimum and a maximum with `..` between them.
+    /// Transmission time of a state, as written. This is a time, or a minimum and a maximum with `..` between them.
     pub(super) latency: Option<At<String>>,
     /// Probability that a state is lost.
     pub(super) loss: Option<At<f64>>,
@@ -72,7 +72,7 @@ pub(super) struct RobotText {
     pub(super) name: At<String>,
     /// File of the plan, relative to the folder of the scenario.
     pub(super) file: At<PathBuf>,
-    /// Name of the plan, for a file with several plans.
+    /// Name of the plan to run, for a file with several plans.
     pub(super) plan: Option<At<String>>,
     pub(super) start: At<String>,
     pub(super) start_noise: Option<At<String>>,
@@ -80,13 +80,14 @@ pub(super) struct RobotText {
     pub(super) seed: Option<At<u64>>,
     /// Folder of the paths that the plan replays, relative to the folder of the scenario.
     pub(super) paths: Option<At<PathBuf>>,
-    /// Name of the path to replace by the way back after each `path` and `Follow`.
+    /// Name of the path that the run replaces with the way back after each `path` and `Follow`.
     pub(super) records: Option<At<String>>,
     /// Time at which the robot's program is killed.
     pub(super) killed: Option<At<String>>,
-    /// Radius of the robot's head, between two ears; the module `heading` then publishes the bearing of a sound.
+    /// Radius of the robot's head, which has two ears. With ears, the module `heading` publishes the bearing of a
+    /// sound.
     pub(super) ears: Option<At<String>>,
-    /// Names of the modules whose attributes the robot shares with the others.
+    /// Names of the modules whose attributes the robot shares with the other robots.
     #[serde(default)]
     pub(super) shares: Vec<String>,
     /// Names of the robots whose plans the robot accepts.
@@ -94,7 +95,7 @@ pub(super) struct RobotText {
     pub(super) plans_from: Vec<At<String>>,
 }
 
-/// A plan that a robot sends, as written.
+/// A plan that one robot sends to another, as written in the scenario file.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct SentPlanText {
@@ -111,21 +112,21 @@ pub(super) struct SentPlanText {
 /// An error in a scenario file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct ScenarioError {
-    /// Byte range in the file; `None` for the whole file.
+    /// Byte range of the error in the file; `None` if the error concerns the whole file.
     pub(super) place: Option<Range<usize>>,
     /// Description of the error.
     pub(super) message: String,
-    /// Text to type instead; empty if there is none.
+    /// Text that the user can type instead; empty if there is no such text.
     pub(super) help: String,
 }
 
 impl ScenarioError {
-    /// Returns an error at a place of the file.
+    /// Creates an error at a place of the file.
     pub(super) fn at(place: Range<usize>, message: impl Into<String>) -> Self {
         Self { place: Some(place), message: message.into(), help: String::new() }
     }
 
-    /// Returns an error about the whole file.
+    /// Creates an error about the whole file.
     pub(super) fn whole(message: impl Into<String>) -> Self {
         Self { place: None, message: message.into(), help: String::new() }
     }
@@ -146,8 +147,8 @@ pub(super) fn duration(text: &At<String>, least: f64, most: f64) -> Result<Durat
 /// Reads a scenario file.
 ///
 /// # Errors
-/// Fails if the text is not TOML, has unknown keys or values of the wrong type, no robot, or two robots of the same
-/// name.
+/// Fails if the text is not TOML, if it contains unknown keys or values of the wrong type, or if it has no robot or two
+/// robots with the same name.
 pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
     let file: ScenarioText = toml::from_str(text).map_err(|error| refused(&error))?;
     for (number, robot) in file.robot.iter().enumerate() {
@@ -174,7 +175,8 @@ pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
     Ok(file)
 }
 
-/// Returns the error for text that the TOML parser refuses; for an unknown key, with the most similar name.
+/// Returns the error for a text that the TOML parser refuses. For an unknown key, the error proposes the most similar
+/// name.
 fn refused(error: &toml::de::Error) -> ScenarioError {
     let place = error.span();
     let message = error.message().replace('\n', "; ").replace("expected u64", "expected a whole number");

@@ -1,4 +1,4 @@
-//! The files that a scenario reads: those of the file system, or copies inside an executable.
+//! The files that a scenario reads: either files on the disk, or copies inside an executable.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -14,30 +14,30 @@ use crate::failure;
 /// Name of the target of all robots.
 const SIM: &str = "sim";
 
-/// The files of a scenario, by the names that the scenario and its plans give them.
+/// The files of a scenario, by the names that the scenario and its plans use for them.
 pub(super) struct ScenarioFiles {
     /// Path of the scenario's own file.
     pub(super) path: PathBuf,
-    /// Contents of the files that were read, or of all files inside an executable.
+    /// Contents of the files that have been read; inside an executable, contents of all files.
     contents: RefCell<BTreeMap<PathBuf, Vec<u8>>>,
     /// Texts of the files inside an executable, for the plans that use them.
     texts: OnceCell<Unsaved>,
-    /// `true` for copies inside an executable: no other file is read.
+    /// `true` for copies inside an executable. In this case, no other file is read.
     are_inside: bool,
 }
 
 impl ScenarioFiles {
-    /// Returns the files of the file system, for the scenario in the file at `path`.
+    /// Creates the files of the scenario at `path`, for files on the disk.
     pub(super) fn of_system(path: &Path) -> Self {
         Self { path: path.to_owned(), contents: RefCell::default(), texts: OnceCell::new(), are_inside: false }
     }
 
-    /// Returns copies of files for the scenario whose file is called `path`.
+    /// Creates the files of a scenario from copies; `path` is the name of the scenario's file.
     pub(super) fn inside(path: &Path, contents: BTreeMap<PathBuf, Vec<u8>>) -> Self {
         Self { path: path.to_owned(), contents: RefCell::new(contents), texts: OnceCell::new(), are_inside: true }
     }
 
-    /// Returns the contents of all files that were read.
+    /// Returns the contents of all files that have been read.
     pub(super) fn into_contents(self) -> BTreeMap<PathBuf, Vec<u8>> {
         self.contents.into_inner()
     }
@@ -96,8 +96,8 @@ impl ScenarioFiles {
         Ok(plan(path, own, target)?.with_unsaved(self.texts.get_or_init(all).clone()))
     }
 
-    /// Keeps the files of a plan that has been compiled, and prints its diagnostics. Does neither for a plan inside an
-    /// executable, because the build has done both.
+    /// Stores the files of a plan that has been compiled, and prints its diagnostics. Does nothing for a plan inside an
+    /// executable, because both were done when the executable was built.
     pub(super) fn compiled(&self, input: &Input, diagnostics: &[Diagnostic]) {
         if !self.are_inside {
             let files = input.files().map(Path::to_owned).zip(input.texts().map(|text| text.as_bytes().to_vec()));

@@ -1,4 +1,4 @@
-//! The turns of all robots of a scenario, on a common clock (docs/src/many_robots.md).
+//! Makes the turns of all robots of a scenario, on a common clock (docs/src/many_robots.md).
 
 use std::time::Duration;
 
@@ -22,13 +22,13 @@ const FAR: f64 = 100.0;
 pub(super) struct Fleet {
     runners: Vec<Runner>,
     period: Duration,
-    /// Minimum gap between two robots in any turn, in metres, with the numbers of the two robots; `None` if no two
-    /// robots were closer than [`FAR`].
+    /// Minimum gap between two robots so far, in metres, and the numbers of these robots; `None` if no two robots were
+    /// closer than [`FAR`].
     nearest: Option<(f64, usize, usize)>,
 }
 
 impl Fleet {
-    /// Returns the robots before their first turn. If `are_recorded` is `true`, they collect the data that a record
+    /// Creates the robots before their first turn. If `are_recorded` is `true`, they collect the data that a record
     /// needs.
     ///
     /// # Errors
@@ -42,11 +42,12 @@ impl Fleet {
         Ok(Self { runners: runners.collect::<Result<_, _>>()?, period: scenario.period, nearest: None })
     }
 
-    /// Makes turns until all plans are over, at `timeout`, or until a signal asks for the end; returns the exit status.
+    /// Makes turns until all plans are over, until the time `timeout` has passed, or until a signal requests the end.
+    /// Returns the exit status.
     ///
-    /// In each turn, the robots move, one after the other in the order of the file, each among the current
-    /// poses of the others; then all robots sense; then all plans make their turns, with the states that the
-    /// link delivered from earlier turns.
+    /// In each turn, the robots first move, one after the other in the order of the file, each among the current poses
+    /// of the others. Then all robots sense. Then all plans make their turns, with the states that the link has
+    /// delivered from earlier turns.
     pub(super) fn run(mut self, timeout: Duration, interruption: &Interruption, output: &mut ScenarioOutput) -> u8 {
         let nanos = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
         let (period, timeout) = (nanos(self.period), nanos(timeout));
@@ -83,7 +84,7 @@ impl Fleet {
         outputs.collect()
     }
 
-    /// Updates the poses of the other robots that a robot senses.
+    /// Updates the poses of the other robots that the robot `number` senses.
     fn look(&mut self, number: usize) {
         let others = self.runners.iter().enumerate().filter(|(other, _)| *other != number);
         let others: Vec<Footprint> = others.map(|(_, other)| other.robot.footprint()).collect();
@@ -105,7 +106,8 @@ impl Fleet {
         }
     }
 
-    /// Reports the end of a run at time `t` with these outputs, and stops the robots that still drive.
+    /// Reports the end of a run at time `t`, and stops the robots that still drive. `outputs` contains the last output
+    /// of each robot.
     fn ends(&mut self, outputs: &[Sensed], t: Nanos, output: &mut ScenarioOutput) {
         for (runner, y) in self.runners.iter_mut().zip(outputs) {
             let law = runner.law();
@@ -135,7 +137,7 @@ impl Fleet {
 }
 
 impl Runner {
-    /// Returns the current law.
+    /// Returns the current law; `None` if no law runs.
     fn law(&self) -> Option<String> {
         let machine = self.machine()?;
         machine.atom().map(|atom| machine.plan().law(atom).to_owned())

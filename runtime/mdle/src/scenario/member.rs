@@ -1,4 +1,4 @@
-//! A running robot of a scenario: its turns, and the way back that it records.
+//! A running robot of a scenario: makes the robot's turns, and records its way back.
 
 use std::collections::VecDeque;
 use std::fmt::Write as _;
@@ -30,13 +30,13 @@ pub(super) struct Runner {
     input: Twist,
     transitions: Transitions,
     passes: Passes,
-    /// Number of the plan that made the last turn.
+    /// Number of the plan that made the last turn, counting from 1.
     plan_number: u64,
     killed: Option<Nanos>,
     recorder: Option<WayRecorder>,
-    /// The path recorded in the previous turn, which replaces an earlier path; `None` if no path was recorded.
+    /// Path that was recorded in the previous turn and has replaced an earlier path; `None` if no path was recorded.
     replaced: Option<StoredPath>,
-    /// Ears of the robot, and the microphones through which the module `heading` gets their samples; `None` for a robot
+    /// Ears of the robot, and the microphones that pass their samples to the module `heading`; `None` for a robot
     /// without ears.
     ears: Option<(RobotEars, Microphones)>,
     /// Plans that the robot has not sent yet.
@@ -56,19 +56,19 @@ pub(super) enum MemberState {
     Failed(String),
 }
 
-/// A turn of a robot, for the log.
+/// Data of a robot's turn, for the log.
 pub(super) struct MemberTurn {
-    /// Lines for the report, without the time and the name.
+    /// Lines for the report, without the time and the robot's name.
     pub(super) lines: Vec<String>,
     /// Number of the atom's state, and its law; `None` if no law was applied.
     pub(super) law: Option<(u64, String)>,
-    /// Name and text of the path recorded in this turn; `None` if no path was recorded.
+    /// Name and text of the path that was recorded in this turn; `None` if no path was recorded.
     pub(super) path: Option<(&'static str, String)>,
     /// `true` if a plan has replaced another one in this turn.
     pub(super) begins: bool,
     /// Source of the input; `None` if the robot was not driven.
     pub(super) kind: Option<Turn<()>>,
-    /// Changes in this turn that a record needs in addition to the robot's output.
+    /// Changes in this turn, which a record needs in addition to the robot's output.
     pub(super) changes: Vec<RecordedChange>,
 }
 
@@ -142,7 +142,7 @@ impl Runner {
         })
     }
 
-    /// Returns the plan that runs, once it has begun.
+    /// Returns the running plan; `None` if no plan has begun.
     pub(super) fn machine(&self) -> Option<&Machine<LoadedPlan<SimAlphabet>>> {
         self.engine.machine()
     }
@@ -176,7 +176,7 @@ impl Runner {
         self.input = Twist::default();
     }
 
-    /// Makes turn `number` at time `t` with this output; a robot that is no longer driven does not move.
+    /// Makes turn `number` at time `t` with the output `y`. A robot that is no longer driven does not move.
     pub(super) fn turn(&mut self, y: &Sensed, t: Nanos, number: u64) -> MemberTurn {
         let (lines, changes) = (Vec::new(), Vec::new());
         let mut made = MemberTurn { lines, law: None, path: None, begins: false, kind: None, changes };
@@ -256,8 +256,8 @@ impl Runner {
         made.law = machine.atom().map(|atom| (machine.state(), plan.law(atom).to_owned()));
     }
 
-    /// Records the path driven under `path` and `Follow`. If the way back has replaced a path, returns the name and the
-    /// new text of this path.
+    /// Records the path that the robot drives under `path` and `Follow`. If the way back has replaced a path, returns
+    /// the name and the new text of this path.
     fn records(&mut self, y: &Sensed, law: Option<&str>, lines: &mut Vec<String>) -> Option<(&'static str, String)> {
         let recorder = self.recorder.as_mut()?;
         let has_changed = !self.transitions.is_empty();

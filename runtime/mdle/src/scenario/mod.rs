@@ -1,6 +1,6 @@
-//! `mdle run SCENARIO.toml`: runs several robots in one world and one process (docs/src/many_robots.md).
+//! `mdle run SCENARIO.toml`: runs several robots in one world and in one process (docs/src/many_robots.md).
 //!
-//! The executable of a scenario runs the same functions on copies of the scenario's files ([`embedded`]).
+//! The executable of a scenario calls the same functions with copies of the scenario's files ([`embedded`]).
 
 mod arguments;
 mod crowd;
@@ -44,7 +44,7 @@ pub fn is_scenario(file: &Path) -> bool {
     file.extension().is_some_and(|extension| extension == "toml")
 }
 
-/// Runs a scenario with the modules in `library` in each robot; returns the exit status.
+/// Runs a scenario; each robot has the modules in `library`. Returns the exit status.
 ///
 /// # Errors
 /// Fails if the scenario cannot be run.
@@ -116,7 +116,7 @@ fn run_robots(scenario: Scenario, options: &ScenarioOptions, library: &Library<S
     }
 }
 
-/// Prints the error of a scenario file.
+/// Prints the error of a scenario file, and returns the failure.
 fn refused(path: &Path, text: &str, error: &ScenarioError) -> Failure {
     let mut sources = Sources::default();
     let source = sources.add(path.display().to_string(), text);

@@ -23,11 +23,11 @@ pub(super) struct ScenarioOutput {
     plot: Option<(PathBuf, FleetDrawing)>,
     trips: Option<(PathBuf, TripDrawing)>,
     paths: Option<PathBuf>,
-    /// The first error, after which the run ends.
+    /// First error; after it, the run ends.
     failed: Option<String>,
 }
 
-/// A file that grows during the run.
+/// A file to which lines are appended during the run.
 struct GrowingFile {
     path: PathBuf,
     file: BufWriter<File>,
@@ -76,7 +76,7 @@ impl ScenarioOutput {
         Ok(output)
     }
 
-    /// Writes a turn of a robot with this output.
+    /// Writes a turn of a robot whose output is `y`.
     pub(super) fn turn(&mut self, runner: &Runner, y: &Sensed, t: Nanos, number: u64, made: &MemberTurn) {
         for line in &made.lines {
             self.line(t, &runner.name, line);
@@ -208,7 +208,8 @@ fn setup(scenario: &Scenario) -> String {
     format!("world {}, {}, {seed}", scenario.world_name, robots.collect::<Vec<_>>().join(", "))
 }
 
-/// Replaces the file of a path in `folder`. A concurrent reader gets either the old path or the new path.
+/// Replaces the file of a path in `folder`. A program that reads the file at the same time gets either the old path or
+/// the new path.
 fn record(folder: &Path, name: &str, text: &str) -> Result<(), String> {
     let file = folder.join(if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") });
     let unfinished = file.with_extension(format!("{}.tmp", std::process::id()));

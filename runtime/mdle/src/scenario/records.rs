@@ -1,4 +1,5 @@
-//! The records of the robots of a scenario: one file for each robot, in the same format as the record of any run.
+//! The records of the robots in a scenario. Each robot has its own file, in the same format as the record of any other
+//! run.
 
 use std::fs;
 use std::io;
@@ -26,8 +27,8 @@ struct MemberRecord {
 }
 
 impl ScenarioRecords {
-    /// Creates the records of a scenario: `run.mcap` becomes `run.ada.mcap` for the robot `ada`. `command` is the
-    /// command that repeats the run.
+    /// Creates the records of a scenario. For the log `run.mcap`, the record of the robot `ada` is `run.ada.mcap`.
+    /// `command` is the command that repeats the run.
     ///
     /// # Errors
     /// Fails with a message if a record cannot be written; in this case, the records that were created are removed.
@@ -68,8 +69,8 @@ impl ScenarioRecords {
         })
     }
 
-    /// Completes the record of a robot, unless it is complete already, with the output `y` at time `t` and the cause of
-    /// the end.
+    /// Completes the record of a robot with the output `y` at time `t` and the cause of the end. Has no effect if the
+    /// record is already complete.
     ///
     /// # Errors
     /// Fails with a message if the record cannot be written.
@@ -88,7 +89,7 @@ impl ScenarioRecords {
     }
 }
 
-/// Removes the file of a record that contains no run.
+/// Removes the file of a record that does not contain a run.
 pub(super) fn remove(path: &Path) {
     // Best effort: the error that prevented the run is reported instead.
     let _ = fs::remove_file(path);

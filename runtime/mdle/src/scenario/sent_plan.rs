@@ -1,4 +1,4 @@
-//! Plans that robots of a scenario send each other at given times.
+//! Plans that robots of a scenario send to each other at given times.
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_engine::When;
@@ -13,16 +13,16 @@ use super::files::ScenarioFiles;
 pub(super) struct SentPlan {
     /// Time at which the plan is sent.
     pub(super) at: Nanos,
-    /// Name of the robot that gets the plan.
+    /// Name of the robot to which the plan is sent.
     pub(super) to: String,
-    /// Name of the file, as the scenario gives it.
+    /// Name of the plan's file, as the scenario gives it.
     pub(super) name: String,
     pub(super) text: String,
     /// Moment at which the plan takes over.
     pub(super) when: When,
 }
 
-/// Returns the plans that the robot `own` sends, in the order of their times.
+/// Returns the plans that the robot `own` sends, sorted by time.
 ///
 /// # Errors
 /// Fails if a value is invalid, or if a file cannot be read.

@@ -22,9 +22,9 @@ use crate::arguments::head;
 use crate::failure::{self, Failure};
 use crate::plans::texts;
 
-/// Maximum size of a file of a path or a world, in bytes.
+/// Maximum size of a path file or a world file, in bytes.
 const LARGEST: u64 = 10_000_000;
-/// Time after which a scenario ends by default.
+/// Default time limit of a scenario.
 pub(super) const TIMEOUT: Duration = Duration::from_secs(3600);
 
 /// A scenario.
@@ -48,10 +48,10 @@ pub(super) struct ScenarioRobot {
     /// Body of the robot.
     pub(super) body: Body,
     pub(super) robot: Simulated,
-    /// Nominal pose at which the robot's odometry begins, in the world.
+    /// Nominal pose in the world at which the robot's odometry is zero.
     pub(super) start: Pose,
     pub(super) loaded: Arc<Loaded<SimAlphabet>>,
-    /// Names and texts of the plan's files, the plan's own file first.
+    /// Names and texts of the plan's files; the plan's own file comes first.
     pub(super) files: Vec<(String, String)>,
     /// Paths that the plan replays; a path that the robot records may be missing.
     pub(super) paths: Vec<(&'static str, Vec<Setpoint>)>,
@@ -59,17 +59,17 @@ pub(super) struct ScenarioRobot {
     pub(super) records: Option<&'static str>,
     /// Time at which the robot's program is killed.
     pub(super) killed: Option<Nanos>,
-    /// Ears of the robot, and the radius of the head between them, in metres; `None` for a robot without ears.
+    /// Ears of the robot, and the radius of its head in metres; `None` for a robot without ears.
     pub(super) ears: Option<(RobotEars, f64)>,
     /// Names of the modules whose attributes the robot shares.
     pub(super) shares: Vec<String>,
     /// Names of the robots whose plans the robot accepts.
     pub(super) plans_from: Vec<String>,
-    /// Plans that the robot sends, in the order of their times.
+    /// Plans that the robot sends, sorted by time.
     pub(super) sends: Vec<SentPlan>,
 }
 
-/// Error of a scenario: in its file, or in a plan whose error was reported.
+/// Error of a scenario: either in its own file, or in a plan whose error has been reported.
 pub(super) enum SetupError {
     File(ScenarioError),
     Plan(Failure),
@@ -88,10 +88,10 @@ impl<F: Into<Failure>> From<F> for SetupError {
 }
 
 impl Scenario {
-    /// Creates the robots of the scenario in these files. Messages about plans go to standard error.
+    /// Creates the robots of the scenario that these files describe. Messages about plans go to standard error.
     ///
     /// # Errors
-    /// Fails if a value of the file is invalid, if a file that it names cannot be read, or if a plan has
+    /// Fails if a value in the scenario file is invalid, if a file that it names cannot be read, or if a plan has
     /// errors.
     pub(super) fn read(text: ScenarioText, files: &ScenarioFiles, seed: Option<u64>) -> Result<Self, SetupError> {
         let seed = seed.or(text.seed.as_ref().map(|seed| *seed.get_ref()));
@@ -118,7 +118,7 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// Creates a robot, which must not overlap with the robots before it.
+    /// Creates a robot. It must not overlap with the robots that were created before.
     fn member(&self, text: &RobotText, from: &ScenarioFiles, names: &[&str]) -> Result<ScenarioRobot, SetupError> {
         let name = text.name.get_ref();
         let (loaded, files) = plan(&text.file, text.plan.as_ref(), from, Some((text, names)))?;
@@ -197,11 +197,12 @@ impl Scenario {
     }
 }
 
-/// A plan with the names and the texts of its files, the plan's own file first.
+/// A plan, and the names and texts of its files; the plan's own file comes first.
 pub(super) type PlanWithFiles<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 
-/// Compiles and loads the plan of a robot, or the robot's part of a group's plan. `robot` contains the robot and the
-/// names of all robots of the scenario; `None` for a crowd. `A` is bound to the alphabet of the simulated robot.
+/// Compiles and loads the plan of a robot; if the file contains a group's plan, the plan for this robot of the group.
+/// `robot` contains the robot and the names of all robots of the scenario; `None` for a crowd. `A` is bound to the
+/// alphabet of the simulated robot.
 pub(super) fn plan<A: Alphabet>(
     file: &At<PathBuf>,
     plan_name: Option<&At<String>>,
@@ -245,7 +246,7 @@ fn placed(place: Range<usize>, error: InputError) -> SetupError {
     ScenarioError::at(place, message).help(help).into()
 }
 
-/// Returns the name of a robot's part of a group's plan. The scenario must have all robots of the group.
+/// Returns the name of the plan for this robot in a group's plan. The scenario must have all robots of the group.
 fn part(text: &RobotText, names: &[&str], group: &RobotGroup) -> Result<String, ScenarioError> {
     let (own, name) = (text.name.get_ref(), &group.name);
     let robots = group.robots.join(", ");
@@ -264,7 +265,7 @@ fn part(text: &RobotText, names: &[&str], group: &RobotGroup) -> Result<String, 
     }
 }
 
-/// Returns the error for a name that no other robot of the scenario has.
+/// Returns the error about a name that is not the name of another robot of the scenario.
 fn no_other_robot(other: &At<String>, own: &str, names: &[&str]) -> ScenarioError {
     let others: Vec<&str> = names.iter().copied().filter(|name| *name != own).collect();
     let near = did_you_mean(other.get_ref(), &others);
@@ -272,7 +273,7 @@ fn no_other_robot(other: &At<String>, own: &str, names: &[&str]) -> ScenarioErro
     ScenarioError::at(other.span(), message).help(format!("the other robots of the scenario are {}", others.join(", ")))
 }
 
-/// Returns the error for a robot that a plan names but the scenario lacks.
+/// Returns the error about a robot that a plan names and that the scenario does not have.
 fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError {
     let name = text.name.get_ref();
     if other == name {
@@ -284,7 +285,7 @@ fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError 
     ScenarioError::at(text.file.span(), message).help(format!("the robots of the scenario are {}", names.join(", ")))
 }
 
-/// Returns the world with the name or the file `text`, and its name.
+/// Returns the world that `text` describes by its name or its file, and the name of the world.
 pub(super) fn world(text: Option<&At<String>>, files: &ScenarioFiles) -> Result<(World, String), ScenarioError> {
     let Some(text) = text else {
         let world = World::parse("the empty floor", "");
@@ -317,7 +318,7 @@ pub(super) fn world(text: Option<&At<String>>, files: &ScenarioFiles) -> Result<
     Ok((world, name.clone()))
 }
 
-/// Returns the body called `text`; the ideal body for `None`.
+/// Returns the body with the name `text`; the ideal body if `text` is `None`.
 pub(super) fn body(text: Option<&At<String>>) -> Result<Body, ScenarioError> {
     let Some(text) = text else { return Ok(Body::Ideal) };
     let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == *text.get_ref());
@@ -336,7 +337,7 @@ fn faults(text: &LinkText) -> Result<Faults, ScenarioError> {
     Ok(Faults { latency, loss: share(&text.loss)?, duplication: share(&text.duplication)? })
 }
 
-/// Reads a time, or a minimum and a maximum with `..` between them.
+/// Parses a time, or a minimum and a maximum with `..` between them.
 fn latency(text: &At<String>) -> Result<(Nanos, Nanos), ScenarioError> {
     let (least, most) = text.get_ref().split_once("..").unwrap_or((text.get_ref(), text.get_ref()));
     let time = |part: &str| {
@@ -360,7 +361,7 @@ fn recorded(text: &At<String>, replayed: &[&'static str]) -> Result<&'static str
     })
 }
 
-/// Reads the paths that a plan replays. A path that is recorded may be missing.
+/// Reads the paths that a plan replays. The file of a path that the run records may be missing.
 fn paths(
     text: &RobotText,
     files: &ScenarioFiles,

@@ -17,7 +17,8 @@ pub(super) struct CoverageTable {
     plan: String,
     /// Number of atoms that began, and number of all atoms.
     atoms: [usize; 2],
-    /// Number of ways to end an element, by its interrupt or by completion, that occurred, and number of all ways.
+    /// Number of ways to end an element that occurred, and number of all ways. An element can end by its interrupt or
+    /// by completion.
     ends: [usize; 2],
     /// Number of operands that were both true and false, and number of all operands.
     operands: [usize; 2],

@@ -1,5 +1,5 @@
-//! The explanation of a turn: the scopes that ended, the atoms that were skipped, the atom that ran, and the
-//! conditions for which every scope waited.
+//! The explanation of a turn. It lists the scopes that ended, the atoms that were skipped, the atom that ran, and the
+//! conditions for which each scope waited.
 
 use std::collections::BTreeMap;
 
@@ -11,27 +11,27 @@ use super::operands::OperandFacts;
 use super::scopes::{ScopeState, scopes};
 use crate::examined::{ExaminedPlan, ExaminedTurn, PlanMoment};
 
-/// An atom in a report.
+/// An atom, in the words of a report.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct AtomWords {
     /// Text of the atom's law.
     pub(crate) law: String,
-    /// Line of the atom, with the names of its enclosing scopes and the passes of loops.
+    /// Line of the atom, names of its enclosing scopes, and passes of loops.
     pub(crate) place: String,
 }
 
-/// A transition.
+/// A transition, which ended an atom.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ended {
     /// The atom that was left.
     pub(crate) atom: AtomWords,
-    /// `true` if the atom was entered in the same turn, so that its law was never applied.
+    /// `true` if the atom was entered in the same turn; its law was then never applied.
     pub(crate) is_skipped: bool,
-    /// The cause, with its values and its place.
+    /// Cause of the transition, with its values and its line in the plan.
     pub(crate) cause: String,
-    /// `true` if the law of the atom had completed as well, although an interrupt ended its scope.
+    /// `true` if an interrupt ended the scope although the law of the atom had also completed.
     pub(crate) was_done: bool,
-    /// The scopes that enclose the atom, the plan first.
+    /// Scopes that enclose the atom, from the plan to the atom's own scope.
     pub(crate) scopes: Vec<ScopeState>,
     /// The atom that was entered; `None` if the plan is over.
     pub(crate) to: Option<AtomWords>,
@@ -42,33 +42,33 @@ pub(crate) struct Ended {
 pub(crate) struct AppliedAtom {
     /// The atom.
     pub(crate) atom: AtomWords,
-    /// Time since the atom was entered, without the time during which other plans were active.
+    /// Time since the atom was entered. The time during which other plans were active is not included.
     pub(crate) since: Nanos,
-    /// Time during which other plans were active since the atom was entered.
+    /// Time since the atom was entered during which other plans were active.
     pub(crate) paused: Nanos,
     /// Cause of the transition to the atom; empty for the first atom of the plan.
     pub(crate) began: String,
     /// `true` if the atom's law can complete.
     pub(crate) completes: bool,
-    /// The scopes that enclose the atom, the plan first.
+    /// Scopes that enclose the atom, from the plan to the atom's own scope.
     pub(crate) scopes: Vec<ScopeState>,
 }
 
-/// The atom that ran when another plan replaced its plan.
+/// The atom that was running when another plan replaced its plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Replaced {
     /// The atom.
     pub(crate) atom: AtomWords,
     /// Time for which the atom had run.
     pub(crate) since: Nanos,
-    /// Reason why the other plan replaced it.
+    /// Reason why the other plan replaced the plan of this atom.
     pub(crate) cause: String,
 }
 
 /// The explanation of a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Explanation {
-    /// Number of the turn, from 0.
+    /// Number of the turn, counted from 0.
     pub(crate) turn: u64,
     /// Time of the turn.
     pub(crate) t: Nanos,
@@ -78,7 +78,7 @@ pub(crate) struct Explanation {
     pub(crate) ended: Vec<Ended>,
     /// The atom whose law was applied; `None` if the plan is over.
     pub(crate) runs: Option<AppliedAtom>,
-    /// Reason why the null input was sent instead of a law's input; `None` if a law was applied, or the plan is
+    /// Reason why the null input was sent instead of the input of a law; `None` if a law was applied, or if the plan is
     /// over.
     pub(crate) cut: Option<&'static str>,
     /// Time since the exchange that brought the output.
@@ -89,16 +89,17 @@ pub(crate) struct Explanation {
     pub(crate) computed: Option<Twist>,
 }
 
-/// A transition with its cause, its values and its place.
+/// A transition, with its cause, its values and its line in the plan.
 pub(crate) struct ExplainedTransition {
     pub(crate) transition: Transition,
     pub(crate) cause: String,
 }
 
-/// Explains turns, and follows the loops of plans through all turns.
+/// Explains turns. For this purpose, it keeps track of the passes of loops in all turns.
 #[derive(Debug, Default)]
 pub(crate) struct Explainer {
-    /// The plans that have been active, by their numbers; a plan that was suspended continues where it was.
+    /// Courses of the plans that have been active, by the plans' numbers. A plan that was suspended continues where it
+    /// stopped.
     courses: BTreeMap<u64, PlanCourse>,
     /// Number of the active plan; `None` before the first turn.
     number: Option<u64>,
@@ -111,9 +112,10 @@ pub(crate) struct Explainer {
 struct PlanCourse {
     /// The current passes of the plan's loops.
     passes: Passes,
-    /// Cause of the transition to the current atom, or reason why the plan replaced another plan.
+    /// Cause of the transition to the current atom; at the beginning of a plan, the reason why it replaced another
+    /// plan.
     began: String,
-    /// The atom that ran last; `None` before the first.
+    /// The atom that ran last; `None` before the first atom.
     latest: Option<Latest>,
     /// Time during which other plans were active since the last atom was entered.
     paused: Nanos,
@@ -123,14 +125,14 @@ struct PlanCourse {
 #[derive(Debug, Clone, Copy)]
 struct Latest {
     atom: u32,
-    /// Time for which the atom had run.
+    /// Time for which the atom had been running.
     since: Nanos,
     /// Time of the turn.
     t: Nanos,
 }
 
 impl Explainer {
-    /// Begins a turn. Returns `true` if its plan has replaced another plan.
+    /// Begins a turn. Returns `true` if the plan of this turn has replaced another plan.
     pub(crate) fn begin(&mut self, turn: &ExaminedTurn) -> bool {
         let before = self.number.replace(turn.recorded.plan);
         let is_other = before.is_some_and(|before| before != turn.recorded.plan);
@@ -147,7 +149,7 @@ impl Explainer {
         self.replaced
     }
 
-    /// Records the atom in which a turn ended, and the time for which its plan was inactive before.
+    /// Records the atom in which a turn ended, and the time for which the plan of the turn was inactive before.
     fn note(&mut self, turn: &ExaminedTurn, is_other: bool) {
         let t = turn.recorded.t;
         let Some(moment) = turn.moments.last().filter(|last| last.cause.is_none()) else { return };
@@ -176,7 +178,7 @@ impl Explainer {
         Some(Replaced { atom: atom?, since: Nanos(latest.since.0 + turn.recorded.t.since(latest.t).0), cause })
     }
 
-    /// Continues the course of plan `number`.
+    /// Continues the course of the plan with this number.
     pub(crate) fn resume(&mut self, number: u64) {
         self.number = Some(number);
     }
@@ -191,7 +193,7 @@ impl Explainer {
         self.course().began.clone()
     }
 
-    /// Follows the transitions of a turn that has begun with [`Explainer::begin`] and is not explained.
+    /// Keeps track of the transitions of a turn that has begun with [`Explainer::begin`] and is not explained.
     pub(crate) fn pass(&mut self, turn: &ExaminedTurn, plan: &dyn Texts) {
         for (transition, operands) in turn.transitions.iter() {
             let began = CauseText { plan, transition, operands }.to_string();
@@ -201,7 +203,7 @@ impl Explainer {
         }
     }
 
-    /// Returns the words of an atom in the current passes of its loops.
+    /// Returns an atom in the words of a report, with the current passes of its loops.
     pub(crate) fn atom(&mut self, plan: &dyn Texts, atom: u32) -> AtomWords {
         AtomWords { law: plan.law(atom).to_owned(), place: place(plan, &self.course().passes, atom) }
     }
@@ -215,12 +217,12 @@ impl Explainer {
         turn.transitions.iter().map(step).collect()
     }
 
-    /// Follows the passes of loops through a transition.
+    /// Updates the passes of loops for a transition.
     pub(crate) fn step(&mut self, transition: &Transition, plan: &dyn Texts) {
         self.course().passes.step(plan.fsm(), transition);
     }
 
-    /// Returns the facts that operands read at a moment of a turn.
+    /// Returns the facts of a turn that operands read at a moment.
     pub(crate) fn facts(turn: &ExaminedTurn, moment: &PlanMoment) -> OperandFacts {
         OperandFacts { ages: ages(&turn.recorded.y), stalled: moment.stalled, is_new: moment.is_new() }
     }
@@ -291,7 +293,7 @@ impl Explainer {
     }
 }
 
-/// Reason why no law was applied: the turn was not ready in time.
+/// Reason why no law was applied, if the turn was not ready in time.
 const LATE: &str = "the plan was late";
 
 /// Returns the reason why no law was applied in a turn; `None` if a law was applied, or the plan is over.
@@ -305,8 +307,8 @@ fn cut(turn: &ExaminedTurn, plan: Option<&ExaminedPlan>) -> Option<&'static str>
     }
 }
 
-/// Returns `true` if the law of the atom had completed when the interrupt of its scope, or of an enclosing scope, ended
-/// it.
+/// Returns `true` if the law of the atom had also completed when the interrupt of its scope, or of an enclosing scope,
+/// ended the atom.
 fn was_done(moment: &PlanMoment, transition: &Transition) -> bool {
     moment.is_completed && matches!(transition.cause, Cause::Fired(_))
 }

@@ -1,4 +1,4 @@
-//! Explanations as JSON, for programs.
+//! Writes explanations as JSON, for programs.
 
 use mdle_runtime::{Measured, Nanos, Twist};
 use serde_json::{Value, json};
@@ -111,7 +111,7 @@ fn input(input: Twist) -> Value {
     json!({ "v": input.v.0, "omega": input.omega.0 })
 }
 
-/// Returns, as a JSON object, the answer to the question why an atom or a scope did not begin.
+/// Returns the answer to the question why an atom or a scope did not begin, as a JSON object.
 pub(super) fn absence(never: &NeverAnswer) -> Value {
     let NeverAnswer { asked, began, runs, skipped, chance, follows, end, last, .. } = never;
     let turned = |(turn, t): &Turned| json!({ "turn": turn, "t": t.seconds() });

@@ -1,29 +1,30 @@
-//! Describes the time or the value that an operand needs to fire, or for which it still holds.
+//! Describes the time or the value that an operand still needs to fire. For an operand that has fired, describes how
+//! long or by which margin it remains fired.
 
 use mdle_compiler::plan::Condition;
 use mdle_host::rounded;
 use mdle_runtime::{Examined, Measured, Nanometers, Nanos, Operator, Radians};
 
-/// The facts of a turn that are needed to describe an operand.
+/// Facts about a turn, which are needed to describe an operand.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TurnFacts<'v> {
     /// Time since the scope was entered.
     pub(crate) since: Nanos,
-    /// Length of the path driven since the scope was entered.
+    /// Length of the driven path since the scope was entered.
     pub(crate) way: Nanometers,
     /// Time for which the law of the previous turn has made no progress; `None` if that law has no goal.
     pub(crate) stalled: Option<Nanos>,
     /// `true` if the atom was entered in this turn.
     pub(crate) is_new: bool,
-    /// Unit in which the operand's first value is shown, and the SI value of this unit; `None` if the operand has no
-    /// value.
+    /// Unit in which the operand's first value is shown, with the value of the unit in SI units; `None` if the operand
+    /// has no value.
     pub(crate) unit: Option<(&'v str, f64)>,
     /// `true` if the first value is the range of a sonar.
     pub(crate) is_range: bool,
 }
 
-/// Describes the time or value that an operand needs to fire; for a timer that has fired, the time that has passed;
-/// empty if there is neither. `inner` is the operand of NOT or RISING.
+/// Returns a description of the time or value that an operand still needs to fire. For a timer that has fired, returns
+/// the time that has passed. The description is empty if there is neither. `inner` is the operand of NOT or RISING.
 pub(crate) fn lack(
     condition: &Condition,
     part: Examined,
@@ -84,11 +85,11 @@ pub(crate) fn lack(
     }
 }
 
-/// Duration, in nanoseconds, that distinguishes a `rendezvous` from `stuck`: it fires at the earliest in the turn after
-/// its scope was entered.
+/// Duration, in nanoseconds, that distinguishes a `rendezvous` from `stuck`. With this duration, a `rendezvous` fires
+/// at the earliest in the turn after its scope was entered.
 const MEETING: u64 = 1;
 
-/// Returns, in words, the reason why a `rendezvous` has not fired; empty if it has fired.
+/// Returns the reason, in words, why a `rendezvous` has not fired; empty if it has fired.
 fn meeting(part: Examined, since: Nanos) -> String {
     match (part.fired, since) {
         (true, _) => String::new(),
@@ -97,7 +98,7 @@ fn meeting(part: Examined, since: Nanos) -> String {
     }
 }
 
-/// Returns, in words, the time or the margin for which an operand that has fired still holds; empty if it is not known.
+/// Returns, in words, how much longer or further a fired operand remains fired; empty if this is not known.
 pub(crate) fn held(condition: &Condition, part: Examined, values: &TurnFacts<'_>) -> String {
     let TurnFacts { since, way, .. } = *values;
     match condition {
@@ -120,7 +121,7 @@ pub(crate) fn held(condition: &Condition, part: Examined, values: &TurnFacts<'_>
     }
 }
 
-/// Describes the difference by which a comparison does not hold.
+/// Returns a description of the difference by which a comparison is false.
 fn compared(measured: Measured, values: &TurnFacts<'_>) -> String {
     let Measured::Compared { left, right, .. } = measured else { return "it has not fired".to_owned() };
     let Some((unit, scale)) = values.unit else { return String::new() };
@@ -137,7 +138,7 @@ fn compared(measured: Measured, values: &TurnFacts<'_>) -> String {
     format!("{} {words}", amount(difference / scale, unit))
 }
 
-/// Describes the difference by which a comparison holds; empty if the operand is not a comparison.
+/// Returns a description of the difference by which a comparison is true; empty if the operand is not a comparison.
 fn margin(measured: Measured, values: &TurnFacts<'_>) -> String {
     let (Measured::Compared { left, right, .. }, Some((unit, scale))) = (measured, values.unit) else {
         return String::new();
@@ -148,7 +149,8 @@ fn margin(measured: Measured, values: &TurnFacts<'_>) -> String {
     format!("by {}", amount(-difference(measured).0 / scale, unit))
 }
 
-/// Returns the difference by which a comparison does not hold, negative if it holds, and its kind in words.
+/// Returns the difference by which a comparison is false (a negative number if it is true), and the kind of the
+/// difference in words.
 fn difference(measured: Measured) -> (f64, &'static str) {
     let Measured::Compared { left, operator, right } = measured else { return (0.0, "") };
     match operator {
@@ -166,7 +168,7 @@ fn amount(value: f64, unit: &str) -> String {
     format!("{}{between}{unit}", short(value))
 }
 
-/// Formats a number with two decimals, or with as many more as needed to show a digit other than 0.
+/// Formats a number with two decimals. If all digits would be 0, uses as many decimals as needed to show another digit.
 fn short(value: f64) -> String {
     let text = |decimals: usize| format!("{value:.decimals$}");
     let is_zero = |text: &str| text.parse() == Ok(0.0);

@@ -1,4 +1,4 @@
-//! `mdle why`: explains a turn of a recorded run, after replaying the run up to that turn.
+//! `mdle why`: explains a turn of a recorded run. To do this, it replays the run up to that turn.
 
 mod explanation;
 mod json;
@@ -25,23 +25,23 @@ use crate::failure::{self, Failure};
 use crate::replay::{self, WantedPlan};
 use crate::run_time::run_time;
 
-/// The answer about a turn.
+/// The answer to a question about a turn.
 #[derive(Debug)]
 struct TurnAnswer {
     explanation: Explanation,
-    /// The time in the question.
+    /// Time that the question names.
     asked: Nanos,
     next: NextEvents,
-    /// The safety rule that changed the input, and its effect; `None` if no rule changed it.
+    /// Safety rule that changed the input, and the effect of the rule; `None` if no rule changed the input.
     safety: Option<String>,
 }
 
 /// The events after a turn.
 #[derive(Debug)]
 enum NextEvents {
-    /// The next turn with transitions: their causes, and the atoms to which they led.
+    /// The next turn with transitions. Contains the causes of the transitions, and the atoms to which they led.
     Turn { turn: u64, t: Nanos, steps: Vec<(String, Option<AtomWords>)> },
-    /// No transition until the end of the record; the time and the reason of the end.
+    /// There is no further transition in the record. Contains the time of the end of the record, and its reason.
     End { t: Nanos, why: String },
 }
 
@@ -84,14 +84,14 @@ pub(crate) fn why(arguments: &Why) -> Result<ExitCode, Failure> {
     }
 }
 
-/// A record, with the question about it.
+/// A record, and the question about it.
 struct RecordQuery<'a> {
     name: &'a str,
     begin: &'a Begin,
     with_laws: bool,
 }
 
-/// Explains the turn at a time.
+/// Explains the turn at the time `time`.
 fn at(asked: &RecordQuery<'_>, time: &str, run: &mut ExaminedRun) -> Result<Result<TurnAnswer, ExaminedStop>, Failure> {
     let time = run_time(time)?;
     let mut explainer = Explainer::default();
@@ -145,7 +145,7 @@ fn differing(run: &mut ExaminedRun) -> Option<ExaminedStop> {
 /// Finds the next turn with a transition, or in which another plan takes over.
 ///
 /// # Errors
-/// Fails if the plan is not that of the record.
+/// Fails if the plan is not the plan of the record.
 fn next(explainer: &mut Explainer, found: ExaminedTurn, run: &mut ExaminedRun) -> Result<NextEvents, ExaminedStop> {
     let (mut t, mut end) = (found.recorded.t, found.end);
     let mut had_plan = run.plan().is_some();

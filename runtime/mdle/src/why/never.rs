@@ -1,5 +1,5 @@
-//! `mdle why --not`: finds the chances that an atom or a scope had to begin since it last began, and the reasons why it
-//! did not begin.
+//! `mdle why --not`: finds the opportunities that an atom or a scope had to begin since it last began, and the reasons
+//! why it did not begin.
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -15,23 +15,24 @@ use super::scopes::{ScopeState, scopes};
 use crate::elements_named::elements_named;
 use crate::examined::{ExaminedPlan, ExaminedRun, ExaminedStop, ExaminedTurn, PlanMoment};
 
-/// A turn: its number and its time.
+/// Number and time of a turn.
 pub(crate) type Turned = (u64, Nanos);
 
 /// The answer to the question why an atom or a scope did not begin.
 #[derive(Debug)]
 pub(crate) struct NeverAnswer {
-    /// The atom or the scope as named in the question.
+    /// Text with which the question names the atom or the scope.
     pub(crate) asked: String,
-    /// The turns in which the element began; `None` if it never did.
+    /// Turns in which the element began; `None` if it never began.
     pub(crate) began: Option<Beginnings>,
     /// `true` if the element ran in the last turn.
     pub(crate) runs: bool,
-    /// The turns, since the element last began, in which it was entered and left at once.
+    /// Turns in which the element was entered and left immediately, after the turn in which it last began; `None` if
+    /// there are none.
     pub(crate) skipped: Option<Skips>,
-    /// The element's chances to begin since it last began; `None` if there was no chance.
+    /// Opportunities of the element to begin since it last began; `None` if there were none.
     pub(crate) chance: Option<Chance>,
-    /// The laws of the atoms that the element can follow.
+    /// Laws of the atoms after which the element can begin.
     pub(crate) follows: Vec<String>,
     /// Name of the plan that contains the element; empty unless several plans were active.
     pub(crate) plan: String,
@@ -47,12 +48,13 @@ pub(crate) struct NeverAnswer {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Beginnings {
     pub(crate) times: u64,
-    /// The first and the last of these turns, each with the cause of the transition; empty for the start of the plan.
+    /// The first of these turns, with the cause of the transition; the cause is empty for the start of the plan. `last`
+    /// is the last of these turns, in the same form.
     pub(crate) first: (Turned, String),
     pub(crate) last: (Turned, String),
 }
 
-/// The turns in which an element was entered and left at once.
+/// The turns in which an element was entered and left immediately.
 #[derive(Debug)]
 pub(crate) struct Skips {
     pub(crate) times: u64,
@@ -61,33 +63,33 @@ pub(crate) struct Skips {
     pub(crate) last: Turned,
 }
 
-/// A turn with its atom and the enclosing scopes.
+/// A turn with its current atom and the enclosing scopes.
 #[derive(Debug)]
 pub(crate) struct Stay {
     pub(crate) turned: Turned,
     pub(crate) atom: AtomWords,
     pub(crate) scopes: Vec<ScopeState>,
-    /// Cause of the transition; empty if there was none.
+    /// Cause of the transition; empty if there was no transition.
     pub(crate) cause: String,
 }
 
-/// The turns in which the end of a scope would have led to an atom.
+/// The turns in which the end of a scope would have led to an atom in question.
 #[derive(Debug)]
 pub(crate) struct Chance {
-    /// Name of the scope that would have begun, if it encloses the element of the question.
+    /// Name of the scope that would have begun; `None` unless it encloses the element of the question.
     pub(crate) begins: Option<String>,
-    /// Number of periods of consecutive turns with such a chance; in a loop, one for each pass.
+    /// Number of periods of consecutive turns with such an opportunity. In a loop, there is one period for each pass.
     pub(crate) times: u64,
-    /// Indices, in the list of scopes, of the scopes that would have led to the atom: one of them had to end in the
-    /// first turn.
+    /// Indices, in the list of scopes, of the scopes whose end would have led to the atom. In the first turn, one of
+    /// them would have had to end.
     pub(crate) scopes: Vec<usize>,
     /// The first of these turns.
     pub(crate) first: Stay,
-    /// The last of these turns, and the scope that ended instead, if any did.
+    /// The last of these turns, and the scope that ended instead, if there was one.
     pub(crate) last: Stay,
 }
 
-/// The chances of an atom while the record is read.
+/// The opportunities of an atom to begin, collected while the record is read.
 struct Door {
     times: u64,
     scopes: Vec<usize>,
@@ -96,19 +98,19 @@ struct Door {
     level: u16,
     /// Last turn of the latest period; `None` while the period continues.
     last: Option<Stay>,
-    /// The last turn in which there was a chance, and its moment.
+    /// The last turn in which there was an opportunity, and its moment.
     latest: (FactsOfTurn, PlanMoment),
 }
 
-/// A turn, with the facts that operands read.
+/// A turn, and the facts that operands read in it.
 #[derive(Clone, Copy)]
 struct FactsOfTurn {
     turned: Turned,
     facts: OperandFacts,
 }
 
-/// Answers the question why the atom or the scope that `text` names did not begin, for the last plan of the record that
-/// contains it.
+/// Answers the question why the atom or the scope that `text` names did not begin. The answer is about the last plan of
+/// the record that contains this element.
 ///
 /// # Errors
 /// Fails with a message if no plan of the record contains such an atom or scope.
@@ -148,7 +150,8 @@ pub(crate) fn never(
     Ok(Ok(NeverAnswer { plan, is_replaced: own != number, ..answer }))
 }
 
-/// Returns the message that no plan of the record has such an atom, from the message and the help text for each plan.
+/// Returns the message that no plan of the record has such an atom. `plans` contains the message and the help text for
+/// each plan.
 fn no_atom(text: &str, plans: Vec<(String, (String, String))>) -> String {
     match plans.as_slice() {
         [] => "the record has no turn of a plan".to_owned(),
@@ -161,7 +164,7 @@ fn no_atom(text: &str, plans: Vec<(String, (String, String))>) -> String {
 }
 
 impl NeverAnswer {
-    /// Returns the answer before the first turn.
+    /// Returns the answer in its state before the first turn.
     fn of(text: &str) -> Self {
         Self {
             asked: text.to_owned(),
@@ -178,11 +181,11 @@ impl NeverAnswer {
     }
 }
 
-/// Returns the elements that a text names: the atoms of a line, or the elements that tests of plans name by
-/// this text.
+/// Returns the elements that a text names. They are the atoms of a line, or the elements that tests of plans would name
+/// with this text.
 ///
 /// # Errors
-/// Fails with a message and a help text if there are none.
+/// Fails with a message and a help text if there are no such elements.
 fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> Result<Vec<u32>, (String, String)> {
     let is_line = |element: &Element<'_>| {
         let at = plan.source().bracket(element.number()).map(|words| words.at);
@@ -196,16 +199,16 @@ fn wanted(machine: &Machine, target: &Target, text: &str, plan: &dyn Texts) -> R
     elements_named(machine, target, text)
 }
 
-/// The search in one of the plans of a record.
+/// The search for elements in one of the plans of a record.
 struct PlanSearch {
     plan: Rc<ExaminedPlan>,
-    /// Numbers of the elements in question.
+    /// Numbers of the elements about which the question is asked.
     wanted: Vec<u32>,
-    /// Time of the last beginning of each element in question.
+    /// Time at which each element in question last began.
     entries: BTreeMap<u32, Nanos>,
-    /// Time of the last skip of each element in question.
+    /// Time at which each element in question was last skipped.
     skips: BTreeMap<u32, Nanos>,
-    /// The chances of each atom since an element in question last began.
+    /// Opportunities of each atom since an element in question last began.
     doors: BTreeMap<u32, Door>,
     answer: NeverAnswer,
 }
@@ -238,7 +241,7 @@ impl PlanSearch {
         self.chances(place, moment, "", explainer);
     }
 
-    /// Records that an element in question was entered, and left in the same turn.
+    /// Records that one of the elements in question was entered, and was left in the same turn.
     fn skip(&mut self, place: FactsOfTurn, moment: &PlanMoment, cause: &str, explainer: &mut Explainer) {
         let is_new =
             |bracket: &u32| moment.scopes.iter().any(|scope| scope.bracket == *bracket && scope.since == Nanos::ZERO);
@@ -257,7 +260,7 @@ impl PlanSearch {
         }
     }
 
-    /// Records that an element in question runs or begins, which makes earlier skips and chances irrelevant.
+    /// Records that an element in question runs or begins. Earlier skips and opportunities are then irrelevant.
     fn begin(&mut self, turned: Turned, moment: &PlanMoment, cause: &str) {
         let mut begins = false;
         for scope in moment.scopes.iter().filter(|scope| self.wanted.contains(&scope.bracket)) {
@@ -277,8 +280,8 @@ impl PlanSearch {
         self.doors.clear();
     }
 
-    /// Records the atoms to which the end of a scope would lead at this moment, and the atoms to which it no
-    /// longer does.
+    /// Records the atoms to which the end of a scope would lead at this moment. Also records the atoms to which it
+    /// would no longer lead.
     fn chances(&mut self, place: FactsOfTurn, moment: &PlanMoment, cause: &str, explainer: &mut Explainer) {
         let mut open: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (number, scope) in moment.scopes.iter().enumerate() {
@@ -348,8 +351,8 @@ impl PlanSearch {
     }
 }
 
-/// Returns the atoms after which an element can begin: the last atom of the element before it, and the last atom of
-/// each loop that begins with it.
+/// Returns the atoms after which an element can begin. These are the last atom of the previous element, and the last
+/// atom of each loop whose first element this is.
 fn before(element: Element<'_>) -> Vec<u32> {
     let mut before = Vec::new();
     for inner in element.outwards() {

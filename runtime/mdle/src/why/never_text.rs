@@ -1,4 +1,4 @@
-//! Writes, for people, the answer to the question why an atom or a scope did not begin.
+//! Writes the answer to the question why an atom or a scope did not begin, as text for people.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use mdle_host::{Clocked, rounded};
 use super::never::{Beginnings, Chance, NeverAnswer, Skips, Stay, Turned};
 use super::text::{named, scope};
 
-/// Returns the text of the answer for the record `log`.
+/// Returns the text of an answer about the record `log`.
 pub(super) fn text(never: &NeverAnswer, log: &str) -> String {
     let NeverAnswer { asked, began, runs, skipped, chance, follows, plan, end, is_replaced, last } = never;
     let mut text = match began {
@@ -64,7 +64,7 @@ fn beginnings(asked: &str, began: &Beginnings, log: &str) -> String {
     format!("{times}help: `mdle why {log} {}` explains that turn\n", rounded(t.0))
 }
 
-/// Writes the first turn in which the element was entered and left at once.
+/// Writes the first turn in which the element was entered and left immediately.
 fn skip(text: &mut String, skips: &Skips) {
     let Skips { times, first: Stay { turned: turn, atom, scopes, cause }, last } = skips;
     let _ = writeln!(text, "\n{} was entered in {} and skipped  <- {cause}", named(atom), turned(turn));

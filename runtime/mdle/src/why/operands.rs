@@ -1,5 +1,5 @@
-//! Explains the operands of a condition in a turn: their values, the operands that decide, and the values that operands
-//! need to fire.
+//! Explains the operands of a condition in a turn: their values, the deciding operands, and the values that operands
+//! would need to fire.
 
 use std::iter::Peekable;
 use std::slice::Iter;
@@ -13,33 +13,33 @@ use super::lack::{TurnFacts, held, lack};
 use super::part_text::PartText;
 use crate::examined::ScopeMoment;
 
-/// Age from which the last ping of a sonar is stale.
+/// Age from which the last ping of a sonar is treated as stale.
 const STALE: Nanos = Nanos(1_000_000_000);
 
 /// An operand of a condition in a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MeasuredOperand {
-    /// The operand as written.
+    /// The operand as written in the plan.
     pub(crate) written: String,
-    /// The operand with its values.
+    /// The operand with its measured values.
     pub(crate) words: String,
     /// `true` if the operand has fired.
     pub(crate) fired: bool,
-    /// `true` if the condition ended a scope, and would not have fired if only this operand had been false.
+    /// `true` if the condition ended a scope, and would not have fired if this operand alone had been false.
     pub(crate) decided: bool,
-    /// `true` if the condition has not fired, but would have if only this operand had fired.
+    /// `true` if the condition has not fired, and would have fired if this operand alone had fired.
     pub(crate) suffices: bool,
     /// Values from which the operand was evaluated.
     pub(crate) measured: Measured,
-    /// Time or value that the operand needs to fire, or reason why it has not fired; empty if there is neither.
+    /// Time or value that the operand still needs to fire, or reason why it has not fired; empty if there is neither.
     pub(crate) lack: String,
     /// Remarks about stale data; empty if there are none.
     pub(crate) stale: Vec<String>,
-    /// The parts of an operand that is a NOT or RISING of several conditions.
+    /// Parts of the operand, if it is a NOT or RISING of several conditions; empty otherwise.
     pub(crate) inside: Vec<MeasuredOperand>,
 }
 
-/// The facts of a turn that operands need in addition to their own values.
+/// Facts about a turn that operands need in addition to their own values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OperandFacts {
     /// Time since the last ping of each sonar; `None` before the first ping.
@@ -55,10 +55,10 @@ pub(crate) struct OperandFacts {
 pub(crate) struct Examination {
     /// `true` if the condition has fired.
     pub(crate) fired: bool,
-    /// The parts that AND and OR join, in order.
+    /// Parts of the condition that AND and OR join, in the order of the text.
     pub(crate) operands: Vec<MeasuredOperand>,
-    /// The operands that have not fired, joined as in the condition; empty if the condition has fired, or has only one
-    /// operand.
+    /// Text of the operands that have not fired, joined as in the condition; empty if the condition has fired or has
+    /// only one operand.
     pub(crate) missing: String,
 }
 
@@ -90,12 +90,12 @@ pub(crate) fn examination(
     Examination { fired, operands, missing }
 }
 
-/// A part of a condition with its value.
+/// A part of a condition, with its value in the turn.
 struct ConditionPart<'c> {
     condition: &'c Condition,
     part: Examined,
-    /// Number among the parts that AND and OR join, counted separately inside each NOT and RISING; `None` for
-    /// AND and OR.
+    /// Index among the parts that AND and OR join, counted separately inside each NOT and RISING; `None` for AND and
+    /// OR.
     number: Option<u32>,
     parts: Vec<ConditionPart<'c>>,
 }
@@ -109,7 +109,7 @@ enum Join {
 }
 
 impl<'c> ConditionPart<'c> {
-    /// Pairs a condition with its examined parts, which are in the same order.
+    /// Pairs a condition with its examined parts, which must be in the same order.
     fn of(condition: &'c Condition, parts: &mut Peekable<Iter<'_, Examined>>, next: &mut u32) -> Option<Self> {
         let part = *parts.next()?;
         let is_joining = condition.lasting().is_none() && matches!(condition, Condition::Or(_) | Condition::And(_));
@@ -133,8 +133,8 @@ impl<'c> ConditionPart<'c> {
         }
     }
 
-    /// Returns the value of the condition with the operand `other` inverted, or with no operand inverted if `other` is
-    /// `None`.
+    /// Returns the value that the condition would have if the operand `other` were inverted; if `other` is `None`,
+    /// returns the actual value.
     fn value(&self, other: Option<u32>) -> bool {
         match self.condition {
             _ if self.number.is_some() => self.part.fired != (self.number == other),
@@ -173,8 +173,8 @@ struct Explaining<'e> {
 }
 
 impl Explaining<'_> {
-    /// Explains an operand. `turns` is `true` if inverting this operand alone would invert the condition; `must_end` is
-    /// `true` if the operand is a part of a NOT that has not fired.
+    /// Explains an operand. `turns` is `true` if the condition would be inverted by inverting this operand alone.
+    /// `must_end` is `true` if the operand is a part of a NOT that has not fired.
     fn operand(
         &self,
         node: &ConditionPart<'_>,
@@ -216,7 +216,7 @@ impl Explaining<'_> {
         MeasuredOperand { written, words: shown, fired, decided, suffices, measured, lack, stale, inside }
     }
 
-    /// Returns remarks about the sonars that a condition reads and that have not pinged for a long time.
+    /// Returns remarks about the sonars that a condition reads and that have not sent a ping for a long time.
     fn stale(&self, condition: &Condition) -> Vec<String> {
         let remark = |sonar: usize| match self.facts.ages.get(sonar)? {
             None => Some(format!("sonar {sonar} has not pinged yet")),
@@ -228,7 +228,7 @@ impl Explaining<'_> {
         self.sonars(condition).1.into_iter().filter_map(remark).collect()
     }
 
-    /// Returns `true` if the first signal of a condition is a range, and the sonars that the condition reads.
+    /// Returns `true` if the first signal of a condition is a range, and the list of sonars that the condition reads.
     fn sonars(&self, condition: &Condition) -> (bool, Vec<usize>) {
         let (mut is_range, mut sonars) = (false, Vec::new());
         condition.each_quark(&mut |id| {
@@ -259,7 +259,7 @@ impl Explaining<'_> {
     }
 }
 
-/// Describes an operand that has fired, in a condition that requires it not to fire.
+/// Returns a description of an operand that has fired, although the condition requires that it has not fired.
 fn still(condition: &Condition, held: &str) -> String {
     let is_whole = held.is_empty() || matches!(condition, Condition::Wait { .. });
     if is_whole { held.to_owned() } else { format!("holds {held}") }

@@ -1,5 +1,5 @@
-//! The text of an operand inside NOT or RISING, with units and with the positions of its values. The plan's source
-//! words contain only the whole operand.
+//! The text of an operand inside a NOT or RISING, with units and with the positions of its values. It is needed because
+//! the plan's source text contains only the whole operand.
 
 use mdle_compiler::alphabet::Unit;
 use mdle_compiler::fsm::Machine;
@@ -13,7 +13,7 @@ pub(super) struct PartText {
 }
 
 impl PartText {
-    /// Returns the text of a condition of this machine.
+    /// Creates the text of a condition of this machine.
     pub(super) fn of(condition: &Condition, machine: &Machine) -> Self {
         let written = condition_text(condition, &|id| machine.quark(id).text.clone());
         let own = compared(condition).and_then(|id| {
@@ -45,8 +45,8 @@ fn value(after: usize, unit: Unit) -> ValueWords<'static> {
     ValueWords { after: u32::try_from(after).unwrap_or(u32::MAX), unit: unit.name, scale: unit.to_si(1.0) }
 }
 
-/// Returns the quark of a condition that is a quark or a comparison, also inside NOT and RISING; `None` for any other
-/// condition.
+/// Returns the quark of a condition that is a quark or a comparison, even if it is inside NOT and RISING; `None` for
+/// any other condition.
 fn compared(condition: &Condition) -> Option<QuarkId> {
     match condition {
         Condition::Quark(id) | Condition::Elapsed { quark: id, .. } | Condition::Driven { quark: id, .. } => Some(*id),

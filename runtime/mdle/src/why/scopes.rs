@@ -10,15 +10,15 @@ use crate::examined::{ExaminedPlan, PlanMoment, ScopeMoment};
 pub(crate) enum ScopeRole {
     /// The scope's interrupt has fired and ended it.
     Ended,
-    /// The scope is an atom whose law has completed, which ended it.
+    /// The scope belongs to an atom whose law has completed, which ended the scope.
     Completed,
-    /// The scope's interrupt has fired as well, but an enclosing scope ended first.
+    /// The scope's interrupt has fired too, but an enclosing scope ended first.
     Shadowed,
     /// The scope's interrupt has not fired.
     Waits,
     /// The element has no interrupt that can fire.
     NoInterrupt,
-    /// The element's interrupt was removed, because an enclosing scope has the same one.
+    /// The element's interrupt was removed, because an enclosing scope has the same interrupt.
     Removed,
 }
 
@@ -27,19 +27,19 @@ pub(crate) enum ScopeRole {
 pub(crate) struct ScopeState {
     /// Name of the scope; `None` for an atom and for a scope without a name.
     pub(crate) name: Option<String>,
-    /// `true` if the scope is an atom's own.
+    /// `true` if the scope is the own scope of an atom.
     pub(crate) is_atom: bool,
     /// File and line of the scope.
     pub(crate) line: String,
-    /// The condition as written; empty if there is none.
+    /// Condition of the scope as written; empty if there is no condition.
     pub(crate) condition: String,
     /// Time since the scope was entered.
     pub(crate) since: Nanos,
-    /// Role of the scope at the moment.
+    /// Role of the scope at this moment.
     pub(crate) part: ScopeRole,
     /// Examination of the scope's condition.
     pub(crate) examination: Examination,
-    /// The law of the atom that would follow; `None` if the plan would be over.
+    /// Law of the atom that would follow if the scope ended; `None` if the plan would then be over.
     pub(crate) leads_to: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Explanations for people.
+//! Writes explanations as text for people.
 
 use std::fmt::Write as _;
 
@@ -42,7 +42,7 @@ pub(super) fn text(answer: &TurnAnswer) -> String {
     text
 }
 
-/// Writes a transition, and the conditions of the scopes that enclosed the atom it left.
+/// Writes a transition, and the conditions of the scopes that enclosed the atom that was left.
 fn end(text: &mut String, ended: &Ended) {
     let Ended { atom, is_skipped, cause, was_done, scopes, to } = ended;
     let since = scopes.last().map_or(Nanos::ZERO, |own| own.since);
@@ -126,7 +126,7 @@ fn operand(text: &mut String, operand: &MeasuredOperand, indent: usize, marks: b
     inside.iter().for_each(|part| self::operand(text, part, indent + 5, false));
 }
 
-/// Writes the input that was sent, if it differs from the input that the plan demanded.
+/// Writes the input that was sent, if it differs from the input that the plan requested.
 fn sent(text: &mut String, explanation: &Explanation, safety: Option<&str>) {
     let Explanation { sent, computed, .. } = explanation;
     if let Some(asked) = computed.filter(|asked| asked != sent) {
@@ -162,7 +162,7 @@ fn following(text: &mut String, next: &NextEvents, now: Nanos) {
     }
 }
 
-/// Returns an atom with its place.
+/// Returns an atom as text, with its position in the plan.
 pub(super) fn named(atom: &AtomWords) -> String {
     if atom.place.is_empty() { atom.law.clone() } else { format!("{} ({})", atom.law, atom.place) }
 }

@@ -11,18 +11,18 @@ use mdle_simulator::{Footprint, Output, Simulated};
 use crate::wire::{Incoming, Request, number};
 use reports::Schedule;
 
-/// Number of controller units per metre.
+/// Number of the controller's units per metre.
 const A_METRE: f64 = 139_654.7;
 const A_RADIAN: f64 = 49_784.5;
 /// Default time without a command after which the robot stops itself.
 const FAILSAFE: Duration = Duration::from_secs(1);
 /// Difference between the battery's voltage and the voltage that the controller reports, in volts.
 const ABOVE: f64 = 1.82;
-/// Voltages that the robot reports for a low battery and for a robot on its charger, in hundredths of a volt. The
-/// charger's voltage is higher than that of any battery.
+/// Two voltages, in hundredths of a volt, that the robot reports: for a low battery, and while it is on its charger.
+/// The charger's voltage is higher than the voltage of any battery.
 const LOW: u32 = 1850;
 const PLUGGED: u32 = 2650;
-/// Distance between the robot's wheel sides, in metres, as in the model of its body.
+/// Distance between the wheels of both sides, in metres, as in the model of the robot's body.
 const BETWEEN: f64 = 0.4;
 
 /// Returns the time step of the robot's body: the step of `pace`, divided into parts of at most [`STEP`].
@@ -41,10 +41,10 @@ pub struct Atrv {
     incoming: Incoming,
     /// Reports that have not been sent yet.
     outgoing: Vec<Vec<u8>>,
-    /// Number of the last report.
+    /// Number of the last report, which counts the reports.
     count: u8,
-    /// Commanded speeds, forward and turning, in the controller's units per second, and the last motion command
-    /// received.
+    /// Commanded forward speed and turn rate, in the controller's units per second. They come from the last motion
+    /// command.
     command: (i32, i32),
     last_command: (i32, i32),
     orders: OrderLog,
@@ -62,15 +62,15 @@ pub struct Atrv {
     age: Duration,
     /// `true` while the emergency stop is pressed.
     pub emergency: bool,
-    /// Body faults that have begun.
+    /// Faults of the body that have begun.
     ailments: Vec<Ailment>,
     /// Time without a command after which the robot stops itself.
     pub failsafe: Duration,
 }
 
 impl Atrv {
-    /// Returns a robot that has just been switched on and whose body's time advances in steps of `step`. The function
-    /// passes `marks` to [`Incoming::new`].
+    /// Creates a robot that has just been switched on and whose body's time advances in steps of `step`. `marks` is
+    /// passed to [`Incoming::new`].
     ///
     /// # Errors
     /// Fails if the simulated world rejects the input, which does not occur here.
@@ -124,7 +124,7 @@ impl Atrv {
         &self.orders
     }
 
-    /// Executes a command. Returns `true` if it sets a turn rate, which completes a motion command.
+    /// Executes a command. Returns `true` if the command sets a turn rate, which completes a motion command.
     fn does(&mut self, request: &Request) -> bool {
         if self.has(Ailment::Deaf) {
             return request.port == 2 && request.code == 7 && request.data.first() == Some(&1);
@@ -169,7 +169,7 @@ impl Atrv {
         false
     }
 
-    /// Sets the commanded velocity of an axis. The velocity of the rotation completes a motion command.
+    /// Sets the commanded velocity of an axis. Setting the velocity of the rotation completes a motion command.
     fn moves(&mut self, axis: u8, velocity: i32) {
         match axis {
             0 => self.last_command.0 = velocity,
@@ -189,7 +189,7 @@ impl Atrv {
         }
     }
 
-    /// Advances the world by one step; `age` is the time since switch-on at the end of the step.
+    /// Advances the world by one step. `age` is the time, at the end of the step, since the robot was switched on.
     fn tick(&mut self, age: Duration) -> Result<(), String> {
         self.silence += age.saturating_sub(self.age);
         self.age = age;
@@ -217,7 +217,7 @@ impl Atrv {
         Ok(())
     }
 
-    /// Moves the axes by the odometry's motion from the pose `before` to the current pose.
+    /// Advances the positions of the axes by the motion that odometry has measured since the pose `before`.
     fn goes(&mut self, before: &Pose) {
         let after = &self.sensed.odometry;
         let turn = (after.theta.0 - before.theta.0 + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
@@ -229,7 +229,8 @@ impl Atrv {
         self.gone = (self.gone.0 + way * A_METRE, self.gone.1 + turn * A_RADIAN);
     }
 
-    /// Returns the reported voltage of the battery, in hundredths of a volt. On the charger it is never low.
+    /// Returns the reported voltage of the battery, in hundredths of a volt. On the charger, the battery is never
+    /// reported as low.
     fn battery(&self) -> u32 {
         let supply = self.body.supplied();
         if self.has(Ailment::PluggedIn) || supply.is_plugged {
@@ -246,7 +247,7 @@ impl Atrv {
     }
 }
 
-/// Returns the motion of a body whose right wheels do not move.
+/// Returns the motion of a body whose right wheels do not move; `input` is the commanded motion.
 fn left_alone(input: &Twist) -> Twist {
     let left = input.v.0 - input.omega.0 * (BETWEEN / 2.0);
     Twist { v: MetersPerSecond(left / 2.0), omega: RadiansPerSecond(-left / BETWEEN) }

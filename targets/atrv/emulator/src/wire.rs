@@ -1,11 +1,11 @@
-//! The rFLEX protocol on the controller's side: reads commands from bytes, and writes reports to bytes.
+//! The rFLEX protocol on the controller's side: decodes commands and encodes reports.
 //!
 //! The code is independent of the driver's implementation of this protocol, so that tests reveal an error in either.
 
-/// Maximum length of a command, in bytes. A longer command has lost its end mark during transmission.
+/// Maximum length of a command, in bytes. If a command is longer, its end mark was lost during transmission.
 const LONGEST: usize = 1000;
 
-/// A command: the part of the robot that executes it, its number and its arguments.
+/// A command. Contains the part of the robot that executes it, its number, and its arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Request {
     /// Part of the robot: 1 system, 2 motors, 4 sonars, 5 digital inputs.
@@ -20,12 +20,13 @@ pub struct Request {
 #[derive(Debug, Default)]
 pub struct Incoming {
     bytes: Vec<u8>,
-    /// `true` if `1B 00` means the value 1B.
+    /// `true` if the bytes `1B 00` represent the value 1B.
     marks: bool,
 }
 
 impl Incoming {
-    /// Returns an empty buffer. With `marks`, `1B 00` means the value 1B, which no known controller supports.
+    /// Creates an empty buffer. If `marks` is `true`, the bytes `1B 00` represent the value 1B; no known controller
+    /// supports this.
     #[must_use]
     pub const fn new(marks: bool) -> Self {
         Self { bytes: Vec::new(), marks }
@@ -42,8 +43,8 @@ impl Incoming {
         self.bytes.len()
     }
 
-    /// Returns the next complete command, or `None` if no command is complete. Skips commands with a wrong length or
-    /// checksum, or with an unknown byte after 1B.
+    /// Returns the next complete command; `None` if no command is complete. Skips commands that have a wrong length or
+    /// checksum, or an unknown byte after 1B.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.bytes.windows(2).position(|two| two == [0x1B, 0x02]) else {
@@ -101,11 +102,11 @@ enum CommandBody {
     Open,
     /// This number of bytes at the beginning of the buffer does not belong to a command.
     Lost(usize),
-    /// Bytes of a complete command, and the number of bytes that the command occupies in the buffer.
+    /// Bytes of a complete command, and the number of buffer bytes that the command occupies.
     Whole(Vec<u8>, usize),
 }
 
-/// Returns the transmitted bytes of a report. A value 1B is followed by 00, and `filler` is inserted into the report.
+/// Encodes a report for transmission. A byte 1B is followed by 00, and `filler` is inserted into the report.
 #[must_use]
 pub fn report(port: u8, number: u8, code: u8, data: &[u8], filler: &[u8]) -> Vec<u8> {
     let data = data.get(..data.len().min(255)).unwrap_or_default();
@@ -126,7 +127,7 @@ pub fn report(port: u8, number: u8, code: u8, data: &[u8], filler: &[u8]) -> Vec
     bytes
 }
 
-/// Returns the number in the first four bytes (big-endian).
+/// Returns the number that the first four bytes contain (big-endian).
 #[must_use]
 pub fn number(bytes: &[u8]) -> u32 {
     bytes.iter().take(4).fold(0, |number, byte| number << 8 | u32::from(*byte))

@@ -1,4 +1,4 @@
-//! Checks of configuration values that are valid alone but not in combination.
+//! Checks configuration values that are valid individually but not in combination.
 
 use mdle_serial::shortened;
 
@@ -8,7 +8,7 @@ use crate::local_addresses;
 use crate::names::is_namespace;
 
 impl Config {
-    /// Checks the conditions that the range of a single value cannot express.
+    /// Checks conditions on the values that cannot be expressed as the range of a single value.
     pub(super) fn check(&self) -> Result<(), String> {
         local_addresses::read(&self.network)?;
         self.check_topics()?;
@@ -18,7 +18,7 @@ impl Config {
         self.check_body()
     }
 
-    /// Checks that the body fits into the circle of `body_radius`.
+    /// Checks that the body fits into a circle with the radius `body_radius`.
     fn check_body(&self) -> Result<(), String> {
         let Self { body_radius, half_length, half_width, .. } = self;
         for (key, half) in [("half-length", half_length), ("half-width", half_width)] {
@@ -57,13 +57,13 @@ impl Config {
         Ok(())
     }
 
-    /// Returns the topics in use, each with the configuration key that names it.
+    /// Returns the topics that are in use, each with the configuration key that names it.
     fn topics(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let published = [("state", self.state.as_str()), ("diagnostics", self.diagnostics.as_str())];
         self.robot_topics().chain(published.into_iter().filter(|(_, topic)| !topic.is_empty()))
     }
 
-    /// Returns the topics in use that the robot provides, each with the configuration key that names it.
+    /// Returns the topics that are in use and that the robot provides, each with the configuration key that names it.
     pub(crate) fn robot_topics(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let optional = [("scan", &self.scan), ("battery", &self.battery)];
         let optional = optional.into_iter().filter(|(_, topic)| !topic.is_empty());
@@ -74,7 +74,7 @@ impl Config {
     }
 }
 
-/// Returns the error message for a key that requires a topic and is empty.
+/// Returns the error message about a key that is empty although a topic is required.
 fn empty(key: &str) -> String {
     match key {
         "bumper" => "`bumper` is empty: write the topic that `bumper-type` needs, as in `bumper = \"bumper\"`, or \

@@ -1,4 +1,5 @@
-//! Robot emulator of a Super Scout: the protocol on a pseudo-terminal, and the body in a simulated world.
+//! Robot emulator of a Super Scout. It speaks the robot's protocol on a pseudo-terminal, and moves the body in a
+//! simulated world.
 #![forbid(unsafe_code)]
 
 pub mod scout;

@@ -11,13 +11,15 @@ use crate::wire::{Incoming, Request, answer, number, two_bytes};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
-/// Distance that a wheel moves for each degree of a turn on the spot, in inches.
+/// Distance, in inches, that a wheel moves for each degree of a turn on the spot.
 const INCHES_A_DEGREE: f64 = 0.118_597;
-/// Deceleration of a robot whose motors are limp, in tenths of an inch per second squared: 0.3 m/s².
+/// Deceleration of a robot whose motors have no current, in tenths of an inch per second squared; it corresponds to 0.3
+/// m/s².
 const ROLLING: f64 = 120.0;
-/// Raw values that a report contains for both supply voltages at 10.5 V.
+/// Raw values of both supply voltages in a report, if both are 10.5 V.
 const LOW: [u8; 2] = [202, 177];
-/// Distance between consecutive reported positions of a robot with the fault `leap`, in tenths of an inch: 3 m.
+/// Distance between consecutive positions that a robot with the fault `leap` reports, in tenths of an inch; it
+/// corresponds to 3 m.
 const LEAP: i64 = 1181;
 /// Type of the answer to an unknown command.
 const REFUSED: u8 = 8;
@@ -28,11 +30,11 @@ pub struct Scout {
     body: Simulated,
     sensed: Output,
     incoming: Incoming,
-    /// Last unanswered request, with `true` if the robot knows the command.
+    /// Last request that has not been answered, and `true` if the robot knows its command.
     asked: Option<(Request, bool)>,
     /// Commanded speeds of the wheels, in tenths of an inch per second.
     wheels: (i32, i32),
-    /// `true` while the motors have no current: the robot then rolls until friction stops it.
+    /// `true` while the motors have no current, so that the robot rolls until friction stops it.
     limp: bool,
     /// Pose at which the reported position and heading are zero.
     zero: Pose,
@@ -47,28 +49,28 @@ pub struct Scout {
     age: Duration,
     /// `true` while the emergency stop is pressed.
     pub emergency: bool,
-    /// Faults of the body: a stuck right wheel, a dead front sonar, a pressed first bumper, a low battery, a plugged-in
-    /// charger, and sonars that do not ping.
+    /// Faults of the body: the right wheel is stuck, the front sonar is dead, the first bumper is pressed, the battery
+    /// is low, the charger is plugged in, or the sonars do not ping.
     is_stuck: bool,
     is_deaf: bool,
     is_pressed: bool,
     is_low: bool,
     is_plugged: bool,
     is_mute: bool,
-    /// State that a hung robot repeats; `None` if the robot does not hang.
+    /// State that a robot with the fault `hang` repeats; `None` if the robot does not have this fault.
     hung: Option<Vec<u8>>,
     is_cut_off: bool,
-    /// Wheel speeds that the robot keeps while it ignores all commands; `None` if it obeys.
+    /// Wheel speeds that the robot keeps while it ignores all commands; `None` if it obeys commands.
     runaway: Option<(i32, i32)>,
-    /// Offset of the reported positions, in tenths of an inch.
+    /// Offset that is added to the reported positions, in tenths of an inch.
     off: i64,
-    /// `true` while the offset grows.
+    /// `true` while this offset grows.
     leaps: bool,
     orders: OrderLog,
 }
 
 impl Scout {
-    /// Returns a robot that has just been switched on.
+    /// Creates a robot that has just been switched on.
     ///
     /// # Errors
     /// Fails if the simulated world rejects the input, which does not occur here.
@@ -175,7 +177,7 @@ impl Scout {
         true
     }
 
-    /// Returns the speeds of the right and the left wheel, in tenths of an inch per second.
+    /// Returns the current speeds of the right and the left wheel, in tenths of an inch per second.
     fn rolling(&self) -> (i32, i32) {
         let velocity = self.sensed.velocity();
         let spin = velocity.omega.0.to_degrees() * INCHES_A_DEGREE * INCH;
@@ -183,7 +185,7 @@ impl Scout {
         (tenths(velocity.v.0 + spin), tenths(velocity.v.0 - spin))
     }
 
-    /// Returns the bytes of the state, as an answer contains them.
+    /// Returns the bytes of the state in the form in which an answer contains them.
     fn state(&self) -> Vec<u8> {
         let pose = self.sensed.pose();
         let (x, y) = (pose.x.0 - self.zero.x.0, pose.y.0 - self.zero.y.0);
@@ -214,8 +216,8 @@ impl Scout {
     }
 }
 
-/// Converts a battery voltage to the bytes of both supplies in a report: 0 at two fifths of a supply's full scale, 255
-/// at full scale.
+/// Converts a battery voltage to the bytes that a report contains for both supplies. A byte is 0 at two fifths of a
+/// supply's full scale, and 255 at full scale.
 fn volts(battery: Volts) -> [u8; 2] {
     [12.0, 12.85].map(|range| ((battery.0 * 5.0 / range - 2.0) * (255.0 / 3.0)).round().clamp(0.0, 255.0) as u8)
 }

@@ -1,8 +1,8 @@
-//! The Scout's protocol on the robot's side: reads requests from bytes, and writes answers to bytes.
+//! The Scout's protocol on the robot's side: decodes requests and encodes answers.
 //!
 //! The code is independent of the driver's implementation of this protocol, so that tests reveal an error in either.
 
-/// A request: a command with its arguments.
+/// A request, which consists of a command and its arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Request {
     /// Type of the command.
@@ -28,7 +28,7 @@ impl Incoming {
     }
 
     /// Returns the next complete request; `None` if no request is complete. Bytes that cannot begin a request are
-    /// skipped one by one, as by a robot that waits for a start byte.
+    /// skipped one by one, as the real robot does when it waits for a start byte.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.0.iter().position(|byte| *byte == 1) else {
@@ -61,7 +61,7 @@ impl Incoming {
     }
 }
 
-/// Returns the frame of an answer of type `kind` with the bytes `body`.
+/// Encodes an answer of the type `kind`; `body` is its content.
 #[must_use]
 pub fn answer(kind: u8, body: &[u8]) -> Vec<u8> {
     let length = (body.len() + 2).min(usize::from(u8::MAX));
@@ -73,15 +73,15 @@ pub fn answer(kind: u8, body: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Returns the number in two bytes: 15 bits of magnitude and a sign bit.
+/// Decodes a number from two bytes: 15 bits of magnitude and a sign bit.
 #[must_use]
 pub fn number(low: u8, high: u8) -> i32 {
     let size = i32::from(high % 128) * 256 + i32::from(low);
     if high >= 128 { -size } else { size }
 }
 
-/// Returns a number as two bytes in sign-magnitude form. The number wraps modulo 65,535, the number of different values
-/// in this form.
+/// Encodes a number as two bytes in sign-magnitude form. The number wraps modulo 65,535, which is the number of
+/// different values in this form.
 #[must_use]
 pub fn two_bytes(number: i64) -> [u8; 2] {
     let number = (number + 32_767).rem_euclid(65_535) - 32_767;

@@ -1,4 +1,4 @@
-//! The battery: driving and standby discharge it, a charger charges it, and its voltage falls with its charge.
+//! The battery. Driving and standby discharge it, a charger charges it, and its voltage falls with its charge.
 
 use mdle_runtime::{Supply, Volts};
 
@@ -11,9 +11,9 @@ use mdle_runtime::{Supply, Volts};
 pub(crate) struct Pack {
     /// Energy of the full battery, in joules.
     pub(crate) capacity: f64,
-    /// Power that is always consumed, in watts.
+    /// Power that is consumed all the time, in watts.
     pub(crate) standby: f64,
-    /// Energy per metre that a wheel rolls, in joules; the mean of both wheels counts.
+    /// Energy that the motors need per metre of rolling, in joules. The distance is the mean of both wheels.
     pub(crate) metre: f64,
     /// Power that the charger supplies, in watts.
     pub(crate) charger: f64,
@@ -23,22 +23,22 @@ pub(crate) struct Pack {
 
 /// Number of joules in a watt-hour.
 const WATT_HOUR: f64 = 3600.0;
-/// Voltages of a cell at rest: empty, full, and the limit below which it has to be charged (10.8 V for a battery of six
-/// cells).
+/// Three voltages of a cell at rest: of an empty cell, of a full cell, and the voltage below which the battery has to
+/// be charged (10.8 V for six cells).
 const EMPTY: f64 = 1.75;
 const FULL: f64 = 2.12;
 const LOW: f64 = 1.8;
 
 impl Pack {
-    /// Battery of a robot of 25 kg: 12 V, 36 Ah.
+    /// Battery of a robot with a mass of 25 kg: 12 V, 36 Ah.
     pub(crate) const SCOUT: Self =
         Self { capacity: 432.0 * WATT_HOUR, standby: 30.0, metre: 41.0, charger: 120.0, cells: 6.0 };
-    /// Battery of a robot of 40 kg: 24 V, 30 Ah.
+    /// Battery of a robot with a mass of 40 kg: 24 V, 30 Ah.
     pub(crate) const ATRV: Self =
         Self { capacity: 720.0 * WATT_HOUR, standby: 40.0, metre: 65.0, charger: 200.0, cells: 12.0 };
 }
 
-/// A battery in use.
+/// A battery, with its current charge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Battery {
     pack: Pack,
@@ -47,7 +47,7 @@ pub(crate) struct Battery {
 }
 
 impl Battery {
-    /// Returns a battery with this charge, from 0 to 1.
+    /// Creates a battery with this charge, from 0 to 1.
     pub(crate) fn new(pack: Pack, charge: f64) -> Self {
         Self { pack, charge: charge.clamp(0.0, 1.0) }
     }
@@ -57,8 +57,8 @@ impl Battery {
         self.charge = charge.clamp(0.0, 1.0);
     }
 
-    /// Updates the charge after `seconds` in which the wheels rolled `rolled` metres; `is_plugged` is `true` on the
-    /// charger.
+    /// Updates the charge after a time of `seconds`, in which the wheels have rolled `rolled` metres. `is_plugged` is
+    /// `true` on the charger.
     pub(crate) fn passed(&mut self, seconds: f64, rolled: f64, is_plugged: bool) {
         let Pack { capacity, standby, metre, charger, .. } = self.pack;
         let given = if is_plugged { charger } else { 0.0 };
@@ -70,7 +70,7 @@ impl Battery {
         self.charge <= 0.0
     }
 
-    /// Returns the voltage and flags that the robot measures.
+    /// Returns the voltage and the flags that the robot measures.
     pub(crate) fn supply(&self, is_plugged: bool) -> Supply {
         let cell = EMPTY + (FULL - EMPTY) * self.charge;
         Supply { battery: Volts(cell * self.pack.cells), is_low: cell < LOW, is_plugged }

@@ -1,5 +1,5 @@
-//! The body: a disc or rectangle on driven wheels. Its motors have limits, and it slides along walls
-//! (`dx/dt = f(x) + G(x) u`, paper, Eq. 1).
+//! The body: a disc or a rectangle on driven wheels (`dx/dt = f(x) + G(x) u`, paper, Eq. 1). Its motors have limits,
+//! and the body slides along walls.
 
 mod contact;
 mod odometry;
@@ -18,10 +18,10 @@ use odometry::Odometry;
 /// Maximum step of the integration, in seconds. In one step the robot moves about a centimetre, less than the thickness
 /// of any wall.
 pub(crate) const STEP: f64 = 0.01;
-/// Maximum distance at which the bumper feels a wall, in metres.
+/// Maximum distance, in metres, at which the bumper detects a wall.
 const FEELS: f64 = 0.001;
-/// Minimum fraction of the forward speed that must remain at a wall for the wheels to keep turning: the fraction that
-/// remains at 45° to the wall.
+/// Minimum fraction of the forward speed that must remain at a wall so that the wheels keep turning. It is the fraction
+/// that remains at an angle of 45° to the wall.
 const GLANCES: f64 = 0.5;
 /// Range of the search for walls, in metres from the body's edge. The body can move through the space that the search
 /// has found free before the next search is needed.
@@ -42,11 +42,11 @@ pub(crate) struct Body {
     clear: f64,
 }
 
-/// The obstacle that the body hit in a step.
+/// Obstacle that the body has hit in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Obstacle {
     Nothing,
-    /// A wall that allows only this forward speed, in m/s, and prevents turning if `turns` is `false`.
+    /// A wall, which allows only this forward speed, in m/s. If `turns` is `false`, the wall also prevents turning.
     Wall {
         forward: f64,
         turns: bool,
@@ -54,17 +54,18 @@ enum Obstacle {
 }
 
 impl Body {
-    /// Returns a body at rest at `pose`, with the odometry errors of `seed`, or without errors.
+    /// Creates a body at rest at `pose`. Its odometry has the errors of the random seed `seed`; without a seed, it has
+    /// no errors.
     pub(crate) fn new(drive: Drive, pose: Pose, seed: Option<u64>) -> Self {
         Self { pose, drive, odometry: Odometry::new(drive.slip, seed), left: 0.0, right: 0.0, clear: 0.0 }
     }
 
-    /// Returns a body like this one, at rest at `pose`.
+    /// Creates another body of the same kind, at rest at `pose`.
     pub(crate) fn another(&self, pose: Pose, seed: Option<u64>) -> Self {
         Self::new(self.drive, pose, seed)
     }
 
-    /// Returns the maximum distance that a point of the body moves in this time, in metres.
+    /// Returns the maximum distance, in metres, that any point of the body moves in a time of `seconds`.
     pub(crate) fn goes_most(&self, seconds: f64) -> f64 {
         let way = self.drive.fastest * seconds;
         let turn = Radians(2.0 * self.drive.fastest / self.drive.wheel_base * seconds);
@@ -82,7 +83,7 @@ impl Body {
         self.odometry.pose
     }
 
-    /// Returns the velocities of the wheels, as a twist of the body.
+    /// Returns the forward speed and the turn rate that result from the speeds of the wheels.
     pub(crate) fn velocity(&self) -> Twist {
         Twist {
             v: MetersPerSecond((self.left + self.right) / 2.0),
@@ -114,7 +115,7 @@ impl Body {
         pressed
     }
 
-    /// Moves for `seconds` with this input, which must be finite.
+    /// Moves the body for a time of `seconds` with this input, which must be finite.
     pub(crate) fn advance(&mut self, input: &Twist, seconds: f64, walls: &Walls) {
         let (left, right) = self.drive.commanded(input);
         let acceleration = self.drive.acceleration;
@@ -139,7 +140,7 @@ impl Body {
         self.advance(&Twist::default(), self.drive.fastest / self.drive.acceleration + STEP, walls);
     }
 
-    /// Makes one step of the integration, of `step` seconds.
+    /// Makes one step of the integration. The step has a length of `step` seconds.
     fn step(&mut self, step: f64, walls: &Walls) -> Obstacle {
         let Twist { v, omega } = self.velocity();
         let (way, turn) = (v.0 * step, omega.0 * step);
@@ -174,7 +175,8 @@ impl Body {
         Obstacle::Wall { forward, turns }
     }
 
-    /// Returns `true` if the body at `there` overlaps no obstacle, after its points have moved by at most `way` metres.
+    /// Returns `true` if the body at `there` overlaps no obstacle. To get there, each point of the body has moved by at
+    /// most `way` metres.
     fn is_free(&mut self, there: &Pose, way: f64, walls: &Walls) -> bool {
         let body = Footprint { pose: *there, form: self.drive.form };
         if walls.moving_gap(&body) < 0.0 {
@@ -189,8 +191,8 @@ impl Body {
 }
 
 impl Drive {
-    /// Returns the wheel speeds for an input. If a wheel is too fast, both speeds are reduced by the same factor, so
-    /// that the robot stays on its curve. Then they are truncated.
+    /// Returns the wheel speeds for an input. If a wheel would be too fast, both speeds are reduced by the same factor,
+    /// so that the robot stays on its curve. Then both speeds are truncated.
     fn commanded(&self, input: &Twist) -> (f64, f64) {
         let across = input.omega.0 * (self.wheel_base / 2.0);
         let (left, right) = (input.v.0 - across, input.v.0 + across);
@@ -200,7 +202,7 @@ impl Drive {
     }
 }
 
-/// Returns a speed that has changed towards the commanded speed by at most `most`.
+/// Returns `speed` after it has changed towards `commanded` by at most `most`.
 fn approached(speed: f64, commanded: f64, most: f64) -> f64 {
     speed + (commanded - speed).clamp(-most, most)
 }

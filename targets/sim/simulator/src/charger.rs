@@ -1,10 +1,10 @@
-//! A charger: the pose of a robot on it, and the tolerance of that pose.
+//! A charger: the pose of a robot on the charger, and the tolerance of this pose.
 
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::point::Point;
 
-/// Maximum error of the heading of a robot on its charger, to either side.
+/// Maximum error of the heading, to either side, of a robot on its charger.
 const HEADING: Radians = Radians::from_degrees(15.0);
 
 /// A charger on the floor.
@@ -12,20 +12,20 @@ const HEADING: Radians = Radians::from_degrees(15.0);
 pub struct Charger {
     /// Pose of a robot on the charger: its centre, in metres, and its heading.
     pub pose: Pose,
-    /// Maximum distance of the robot's centre from that pose, in metres; above 0.
+    /// Maximum distance of the robot's centre from this pose, in metres; above 0.
     pub reach: f64,
 }
 
 impl Charger {
-    /// Returns `true` if a robot at `pose` is on the charger: within reach, with a heading that deviates by at
-    /// most 15 degrees.
+    /// Returns `true` if a robot at `pose` is on the charger. The robot must be within the reach of the charger, and
+    /// its heading must deviate by at most 15 degrees.
     #[must_use]
     pub fn holds(&self, pose: &Pose) -> bool {
         let off = Radians(pose.theta.0 - self.pose.theta.0).wrapped();
         pose.distance(&self.pose).0 <= self.reach && off.0.abs() <= HEADING.0
     }
 
-    /// Returns points on the circle in which the centre of a robot on the charger has to be.
+    /// Returns points on the circle within which the centre of a robot on the charger has to be.
     pub fn circle(&self) -> impl Iterator<Item = Point> {
         let at = self.pose;
         let reach = Meters(self.reach);

@@ -1,14 +1,14 @@
-//! Many robots in one world, with a search for robots that are near each other.
+//! Many robots in one world. Finds the robots that are near each other.
 
 use crate::footprint::Footprint;
 use crate::point::Point;
 
 /// Minimum side length of a cell, in metres.
 const CELL_LEAST: f64 = 1.0;
-/// Maximum number of cells per robot.
+/// Maximum number of grid cells per robot.
 const CELLS_MOST: f64 = 8.0;
 
-/// The footprints of robots at one time, in a grid.
+/// The footprints of robots at a certain time, stored in a grid.
 #[derive(Debug, Clone)]
 pub struct Crowd {
     bodies: Vec<Footprint>,
@@ -19,11 +19,11 @@ pub struct Crowd {
     rows: usize,
     /// Index of the first entry of each cell, row by row; an additional last element marks the end of the entries.
     starts: Vec<u32>,
-    /// Numbers and places of the robots, ordered by the cells of their centres.
+    /// Numbers and footprints of the robots, ordered by the cells that contain their centres.
     entries: Vec<(u32, Footprint)>,
 }
 
-/// Groups of robots: no robot can touch a robot of another group.
+/// Groups of robots. Robots of different groups cannot touch each other.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Groups {
     /// Numbers of the robots, group by group, in ascending order within a group.
@@ -33,7 +33,7 @@ pub struct Groups {
 }
 
 impl Crowd {
-    /// Returns a crowd of robots with these footprints, whose coordinates must be finite.
+    /// Creates a crowd of robots with these footprints. Their coordinates must be finite.
     #[must_use]
     pub fn of(bodies: Vec<Footprint>) -> Self {
         let bound = |of: fn(&Footprint) -> f64, pick: fn(f64, f64) -> f64| bodies.iter().map(of).reduce(pick);
@@ -51,7 +51,7 @@ impl Crowd {
         crowd
     }
 
-    /// Enters all robots into the grid: first counts them per cell, then stores them.
+    /// Enters all robots into the grid. First counts the robots of each cell, then stores them.
     fn enter(&mut self) {
         let cells: Vec<usize> = self.bodies.iter().map(|body| self.cell_of(body.at())).collect();
         let mut starts = vec![0_u32; self.columns * self.rows + 1];
@@ -89,7 +89,7 @@ impl Crowd {
         (((y - self.least.y) / self.cell) as usize).min(self.rows - 1)
     }
 
-    /// Returns the footprints of the robots, indexed by their numbers.
+    /// Returns the footprints of the robots; the index is the robot's number.
     #[must_use]
     pub fn bodies(&self) -> &[Footprint] {
         &self.bodies
@@ -112,8 +112,8 @@ impl Crowd {
         }
     }
 
-    /// Returns the groups of robots. Two robots are in the same group if a chain of robots connects them in which
-    /// consecutive centres are at most `reach` metres apart.
+    /// Returns the groups of robots. Two robots are in the same group if a chain of robots connects them, in which the
+    /// centres of neighbours are at most `reach` metres apart.
     #[must_use]
     pub fn groups(&self, reach: f64) -> Groups {
         let mut leaders: Vec<u32> = (0..self.bodies.len() as u32).collect();
@@ -129,7 +129,7 @@ impl Crowd {
     }
 }
 
-/// Returns the lowest known number in the group of `number`, and shortens the chain to it.
+/// Returns the lowest known number in the group of robot `number`, and shortens the chain that leads to it.
 fn leader(leaders: &mut [u32], mut number: u32) -> u32 {
     while leaders[number as usize] != number {
         leaders[number as usize] = leaders[leaders[number as usize] as usize];
@@ -139,8 +139,8 @@ fn leader(leaders: &mut [u32], mut number: u32) -> u32 {
 }
 
 impl Groups {
-    /// Returns the groups. `leaders` has an entry for each robot: its own number if this is the lowest in its group,
-    /// otherwise a lower number of its group.
+    /// Creates the groups. `leaders` contains an entry for each robot: the robot's own number if it is the lowest in
+    /// the group, and a lower number of the group otherwise.
     fn of(leaders: &mut [u32]) -> Self {
         let mut sizes = vec![0_u32; leaders.len()];
         for number in 0..leaders.len() as u32 {
@@ -168,7 +168,8 @@ impl Groups {
         self.starts.len() - 1
     }
 
-    /// Returns the numbers of the robots in a group, in ascending order; `number` is below [`Groups::count`].
+    /// Returns the numbers of the robots in a group, in ascending order. `number` is the index of the group; it must be
+    /// below [`Groups::count`].
     #[must_use]
     pub fn group(&self, number: usize) -> &[u32] {
         let bounds = self.starts.get(number).zip(self.starts.get(number + 1));

@@ -1,4 +1,4 @@
-//! Draws the pictures of a run from its record, after the run has ended.
+//! Records a run, and draws its pictures after the run has ended.
 
 use mdle_runtime::{Nanos, Pose, Sensed};
 
@@ -10,7 +10,7 @@ use crate::robot::Simulated;
 use crate::trail::Trail;
 use crate::world::World;
 
-/// Record of a run in a world, from which its pictures are drawn.
+/// Record of a run in a world. The pictures of the run are drawn from it.
 #[derive(Debug, Clone)]
 pub struct Drawing {
     world: World,
@@ -18,8 +18,8 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Begins the record of `robot` in `world`; `setup` describes the world, the body and the seed in titles. The data
-    /// of a moving picture are recorded only if `animated` is `true`.
+    /// Begins the record of `robot` in `world`. `setup` is the text in titles about the world, the body and the seed.
+    /// The data of a moving picture are recorded only if `animated` is `true`.
     #[must_use]
     pub fn of(robot: &Simulated, world: &World, setup: String, animated: bool) -> Self {
         let mut trail = Trail::from(&robot.footprint());
@@ -29,9 +29,9 @@ impl Drawing {
         Self { world: world.clone(), trail }
     }
 
-    /// Begins the record of a robot whose world is not known, at its first output; the path driven is that of the
-    /// odometry. `setup` describes the run in titles. The data of a moving picture are recorded only if `animated` is
-    /// `true`.
+    /// Begins the record of a robot whose world is not known. `y` is the robot's first output; the driven path is
+    /// measured by odometry. `setup` is the text in titles about the run. The data of a moving picture are recorded
+    /// only if `animated` is `true`.
     #[must_use]
     pub fn without_world(y: &Sensed, setup: String, animated: bool) -> Self {
         let mut trail = Trail::from(&Footprint { pose: y.odometry, form: Form::of(&y.shape) });
@@ -40,8 +40,8 @@ impl Drawing {
         Self { world: World::empty(), trail }
     }
 
-    /// Records an output at time `t` of a robot whose world is not known; `touches` is `true` if a contact begins with
-    /// this output.
+    /// Records the output `y` at time `t`, for a robot whose world is not known. `touches` is `true` if a contact
+    /// begins with this output.
     pub fn sensed(&mut self, y: &Sensed, t: Nanos, touches: bool) {
         self.trail.went(&y.odometry);
         self.trail.sensed(y, t);
@@ -55,14 +55,14 @@ impl Drawing {
         self.trail.went(pose);
     }
 
-    /// Returns the positions of the echoes so far, at most one per square of 4 cm.
+    /// Returns the positions of the echoes so far. In each square of 4 cm, there is at most one position.
     #[must_use]
     pub fn echoes(&self) -> &[Point] {
         &self.trail.echoes
     }
 
-    /// Records an exchange of `robot` at time `t` with the output `sensed`; `touches` is `true` if a contact begins
-    /// with this exchange.
+    /// Records an exchange of `robot` at time `t`, which had the output `sensed`. `touches` is `true` if a contact
+    /// begins with this exchange.
     pub fn exchanged(&mut self, robot: &Simulated, sensed: &Sensed, t: Nanos, touches: bool) {
         self.trail.went(&robot.pose());
         self.trail.things.clear();
@@ -78,8 +78,8 @@ impl Drawing {
         self.trail.went(&robot.pose());
     }
 
-    /// Records that an atom with this law begins at the robot's current pose; `number` is its state in the
-    /// first pass of the enclosing loops.
+    /// Records that an atom with this law begins at the robot's current pose. `number` is the number of the atom's
+    /// state in the first pass of all enclosing loops.
     pub fn began(&mut self, number: u64, law: &str, t: Nanos) {
         self.trail.began(number, law, t);
     }

@@ -1,4 +1,4 @@
-//! Draws several robots in one world: the floor, and the path driven by each robot.
+//! Draws several robots in one world: the floor, and the driven path of each robot.
 
 use mdle_runtime::{Nanos, Pose};
 
@@ -9,7 +9,7 @@ use crate::robot::Simulated;
 use crate::trail::{Companion, Trail};
 use crate::world::World;
 
-/// Record of several robots in a world, from which their picture is drawn.
+/// Record of several robots in a world. Their picture is drawn from it.
 #[derive(Debug, Clone)]
 pub struct FleetDrawing {
     world: World,
@@ -19,7 +19,7 @@ pub struct FleetDrawing {
     contacts: Vec<(Point, Nanos)>,
 }
 
-/// A robot and the path that it has driven.
+/// A robot, and the path that it has driven.
 #[derive(Debug, Clone)]
 struct RobotWay {
     name: String,
@@ -32,7 +32,7 @@ struct RobotWay {
 }
 
 impl FleetDrawing {
-    /// Begins the record of robots in `world`; `title` describes the run.
+    /// Begins the record of robots in `world`; `title` is a text about the run.
     #[must_use]
     pub fn of(world: &World, title: &str) -> Self {
         Self { world: world.clone(), title: title.to_owned(), robots: Vec::new(), contacts: Vec::new() }

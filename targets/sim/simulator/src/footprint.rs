@@ -23,7 +23,7 @@ pub enum Form {
         /// Radius of the disc, in metres.
         radius: f64,
     },
-    /// A rectangle that drives in the direction of its length.
+    /// A rectangle, which drives in the direction of its length.
     Rectangle {
         /// Half of the length, in metres.
         half_length: f64,
@@ -48,20 +48,20 @@ pub(crate) struct Contact {
     pub(crate) gap: f64,
     /// Point on the obstacle.
     pub(crate) place: Point,
-    /// Point of the body at which the obstacle pushes the body away; the centre of a disc.
+    /// Point of the body at which the obstacle pushes the body; for a disc, its centre.
     pub(crate) body: Point,
 }
 
-/// Distance beyond a ray's end at which a body may still be hit, in metres; larger than rounding errors.
+/// Distance, in metres, beyond a ray's end at which the ray can still hit a body; larger than rounding errors.
 const BEYOND: f64 = 1e-6;
-/// Gap of a rectangle that overlaps an obstacle; the depth of the overlap is not known.
+/// Gap of a rectangle that overlaps an obstacle. The value does not depend on the depth of the overlap.
 const OVERLAPS: f64 = -1.0;
 
 impl Form {
     /// The form of a Scout.
     pub(crate) const SCOUT: Self = Self::Disc { radius: RADIUS };
 
-    /// Returns the form of a robot with these measures: a disc if its length equals its width.
+    /// Returns the form of a robot with these dimensions. It is a disc if the length equals the width.
     #[must_use]
     pub fn of(shape: &Shape) -> Self {
         let (half_length, half_width) = (shape.half_length.0, shape.half_width.0);
@@ -91,7 +91,7 @@ impl Form {
     }
 
     /// Returns the maximum distance, in metres, by which a point of the outline moves when the body moves by `way`
-    /// metres and turns by `turn`. The turn of a disc moves no point of its outline.
+    /// metres and turns by `turn`. Turning a disc does not move its outline.
     pub(crate) fn moved(self, way: f64, turn: Radians) -> f64 {
         match self {
             Self::Disc { .. } => way.abs(),
@@ -161,7 +161,7 @@ impl Footprint {
         Point { x: x * cos + y * sin, y: y * cos - x * sin }
     }
 
-    /// Returns the distance from `at` to the edge, negative inside.
+    /// Returns the distance from `at` to the edge of the body; negative inside the body.
     pub(crate) fn distance(&self, at: Point) -> f64 {
         match self.form {
             Form::Disc { radius } => apart(self.at(), at) - radius,
@@ -173,8 +173,8 @@ impl Footprint {
         }
     }
 
-    /// Returns the point of the body that is nearest to `at`, which must be outside the body; for a disc, a point of
-    /// its edge.
+    /// Returns the point of the body that is nearest to `at`, which must be outside the body. For a disc, this point is
+    /// on the edge.
     fn nearest(&self, at: Point) -> Point {
         match self.form {
             Form::Disc { radius } => {
@@ -189,7 +189,7 @@ impl Footprint {
         }
     }
 
-    /// Returns the contact of the body with a wall or side.
+    /// Returns the contact of the body with `segment`, which is a wall or a side of an obstacle.
     pub(crate) fn contact(&self, segment: &Segment) -> Contact {
         let at = self.at();
         if let Form::Disc { radius } = self.form {
@@ -207,7 +207,8 @@ impl Footprint {
         contacts.fold(nothing, |least, contact| if contact.gap < least.gap { contact } else { least })
     }
 
-    /// Returns `true` if a part of the segment is inside the rectangle, by clipping the segment at each pair of sides.
+    /// Returns `true` if a part of the segment is inside the rectangle. For this purpose, the segment is clipped at
+    /// each pair of sides.
     fn is_crossed(&self, segment: &Segment) -> bool {
         let (half_length, half_width) = self.form.halves();
         let (from, to) = (self.inward(segment.from), self.inward(segment.to()));
@@ -245,8 +246,8 @@ impl Footprint {
         }
     }
 
-    /// Returns the distance that a ray from outside in the unit direction `way` travels before it hits the body; `None`
-    /// if the ray does not hit the body within `most` metres.
+    /// Returns the distance that a ray travels before it hits the body. The ray begins outside of the body at `from`,
+    /// and `way` is its unit direction. Returns `None` if the ray does not hit the body within `most` metres.
     pub(crate) fn met(&self, from: Point, way: Point, most: f64) -> Option<f64> {
         let Form::Disc { radius } = self.form else {
             return self.sides().filter_map(|side| side.met(from, way, most)).reduce(f64::min);
@@ -265,8 +266,9 @@ impl Footprint {
         (range >= 0.0 && range < most).then_some(range)
     }
 
-    /// Returns the surface that a ray from outside in the unit direction `way` hits; `None` if the ray does not hit the
-    /// body within `most` metres. The surface is smooth, and a disc has no edges.
+    /// Returns the surface that a ray hits; `None` if it does not hit the body within `most` metres. The ray begins
+    /// outside of the body at `from`, and `way` is its unit direction. The surface is smooth; the surface of a disc has
+    /// no edges.
     pub(crate) fn found(&self, from: Point, way: Point, most: f64) -> Option<Surface> {
         let Form::Disc { radius } = self.form else {
             let met = self.sides().filter_map(|side| Some((side.met(from, way, most)?, side)));

@@ -1,10 +1,11 @@
-//! Records the frames of a moving picture: a limited number, evenly spread over the run, regardless of its duration.
+//! Records the frames of a moving picture. Their number is limited, and they are evenly spread over the run, regardless
+//! of its duration.
 
 use mdle_runtime::{Nanos, Pose, SONARS};
 
 use crate::point::Point;
 
-/// Maximum number of frames kept; when it is reached, every second frame is removed.
+/// Maximum number of frames. When this number is reached, every second frame is removed.
 pub(crate) const FRAMES_MOST: usize = 800;
 
 /// A frame: the state of the robot and of the moving objects at one time of the run.
@@ -18,13 +19,13 @@ pub(crate) struct FilmFrame {
     pub(crate) things: Vec<Option<Point>>,
 }
 
-/// Frames of a run. The longer the run, the smaller the fraction of its frames that is kept.
+/// Frames of a run. A longer run has a smaller fraction of its frames stored.
 #[derive(Debug, Clone)]
 pub(crate) struct Frames {
     kept: Vec<FilmFrame>,
-    /// The last frame of the run, even if it is not among the kept frames; `None` before the first frame.
+    /// The last frame of the run, even if it is not among the stored frames; `None` before the first frame.
     last: Option<FilmFrame>,
-    /// Interval, in frames, at which frames are kept.
+    /// A frame is stored if its number is a multiple of this value.
     stride: u64,
     seen: u64,
 }
@@ -52,7 +53,7 @@ impl Frames {
         self.seen = self.seen.saturating_add(1);
     }
 
-    /// Returns the kept frames in order, followed by the last frame if it is not among them.
+    /// Returns the stored frames in order, followed by the last frame if it is not among them.
     pub(crate) fn all(&self) -> Vec<FilmFrame> {
         let last = self.last.as_ref().filter(|last| self.kept.last() != Some(last));
         self.kept.iter().chain(last).cloned().collect()

@@ -1,4 +1,4 @@
-//! The goal of a run: a zone of the floor, and optionally a heading.
+//! The goal of a run: a zone of the floor and, optionally, a heading.
 
 use mdle_quantity::Quantity;
 use mdle_runtime::{Pose, Radians};
@@ -10,19 +10,19 @@ const FURTHEST: f64 = 1e6;
 /// Number of dots on the edge of a circle on a map.
 const DOTS: u16 = 72;
 
-/// Zone of the floor in which a run is to end, and optionally a heading.
+/// Zone of the floor in which a run has to end and, optionally, the heading that the robot must have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
     /// Zone in which the robot's centre must be.
     pub zone: Zone,
-    /// Required heading and its tolerance to either side; `None` for any heading.
+    /// Required heading, and its tolerance to either side; `None` if any heading is accepted.
     pub heading: Option<(Radians, Radians)>,
 }
 
-/// Form of a goal, edges included.
+/// Form of a goal. Its edges belong to the goal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Zone {
-    /// A rectangle along the axes of the floor.
+    /// A rectangle whose sides are parallel to the axes of the floor.
     Rectangle {
         /// Minimum coordinates.
         min: Point,
@@ -39,10 +39,10 @@ pub enum Zone {
 }
 
 impl Goal {
-    /// Reads `x,y,radius` or `x,y,radius,heading,tolerance`.
+    /// Parses `x,y,radius` or `x,y,radius,heading,tolerance`.
     ///
     /// # Errors
-    /// Fails if the text has another form; the message says what to type instead.
+    /// Fails if the text has another form. The message says what to type instead.
     pub fn read(text: &str) -> Result<Self, String> {
         let sentence = "expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in \
                         `7,3,0.5` or `7,3,50cm,90,15`";

@@ -1,4 +1,4 @@
-//! A uniform grid of segments: finds the first segment that a ray hits, and the segments near a point. This module
+//! A uniform grid of segments. Finds the first segment that a ray hits, and the segments near a point. This module
 //! contains all of the simulator's ray geometry.
 //!
 //! A ray visits the cells on its path in order (Amanatides and Woo, 1987) and stops in the first cell that contains a
@@ -7,14 +7,14 @@
 
 use crate::point::Point;
 
-/// Approximate number of cells per segment: more cells are faster but take more memory.
+/// Approximate number of cells per segment. With more cells, the search is faster but needs more memory.
 const CELLS_FOR_EACH: f64 = 3.0;
 /// Maximum number of cells along one axis.
 const CELLS_MOST: f64 = 4096.0;
-/// Maximum number of cells that a segment of mean length crosses: a world with long walls gets larger cells.
+/// Maximum number of cells that a segment of mean length crosses. A world with long walls therefore has larger cells.
 const CROSSED_MOST: f64 = 8.0;
-/// Fraction of a cell by which a segment is extended at both ends when it is entered into the grid, so that no cell is
-/// missed by rounding.
+/// Fraction of a cell by which both ends of a segment are extended when it is entered into the grid, so that rounding
+/// errors do not cause a cell to be missed.
 const BEYOND: f64 = 1e-6;
 
 /// A segment from the point `from` to `from` plus `along`.
@@ -29,11 +29,11 @@ pub(crate) struct Segment {
 pub(crate) struct Hit {
     /// Distance from the start of the ray, in metres.
     pub(crate) range: f64,
-    /// Number of the segment.
+    /// Index of the segment.
     pub(crate) segment: usize,
 }
 
-/// A grid of segments; each segment is entered in every cell that it touches.
+/// A grid of segments. Each segment is entered in all cells that it touches.
 #[derive(Debug, Clone)]
 pub(crate) struct Grid {
     least: Point,
@@ -81,7 +81,7 @@ impl Segment {
 }
 
 impl Grid {
-    /// Returns a grid of these segments, whose coordinates must be finite.
+    /// Creates a grid of these segments. Their coordinates must be finite.
     pub(crate) fn of(segments: &[Segment]) -> Self {
         let ends = || segments.iter().flat_map(|segment| [segment.from, segment.to()]);
         let bound = |of: fn(Point) -> f64, pick: fn(f64, f64) -> f64| ends().map(of).reduce(pick).unwrap_or(0.0);
@@ -100,7 +100,7 @@ impl Grid {
         grid
     }
 
-    /// Enters all segments: first counts them per cell, then stores them.
+    /// Enters all segments. First counts the segments of each cell, then stores them.
     fn enter(&mut self, segments: &[Segment]) {
         let mut starts = vec![0_u32; self.columns * self.rows + 1];
         for segment in segments {
@@ -122,8 +122,8 @@ impl Grid {
         (self.starts, self.entries) = (starts, entries);
     }
 
-    /// Calls `take` with every cell that a segment touches: column by column, with the rows that the segment crosses
-    /// there.
+    /// Calls `take` with each cell that a segment touches. Goes column by column, and in each column through the rows
+    /// that the segment crosses.
     fn touched(&self, segment: &Segment, mut take: impl FnMut(usize)) {
         let Segment { from, along } = *segment;
         let to = segment.to();
@@ -213,8 +213,8 @@ impl Grid {
         self.entries(self.column(at.x), self.row(at.y)).len() as u64
     }
 
-    /// Returns `true` if a ray from `at` of the length `reach` may hit a segment: whether the bounding rectangle of all
-    /// segments overlaps the square that contains all such rays.
+    /// Returns `true` if a ray from `at` with the length `reach` may hit a segment. The function checks only that the
+    /// bounding rectangle of all segments overlaps the square that contains all such rays.
     pub(crate) fn is_in_reach(&self, at: Point, reach: f64) -> bool {
         let reach = reach + BEYOND * (self.cell + reach);
         let (left, right) = (at.x - reach, at.x + reach);
@@ -227,8 +227,8 @@ impl Grid {
         rows.any(|row| columns.clone().any(|column| self.entries(column, row).iter().any(overlaps)))
     }
 
-    /// Calls `take` with each segment that touches a cell within `reach` of `at`; a segment in several cells is passed
-    /// several times.
+    /// Calls `take` with each segment that touches a cell within `reach` of `at`; `take` is called several times for a
+    /// segment in several cells.
     pub(crate) fn near(&self, at: Point, reach: f64, mut take: impl FnMut(usize, &Segment)) {
         for row in self.row(at.y - reach)..=self.row(at.y + reach) {
             for column in self.column(at.x - reach)..=self.column(at.x + reach) {
@@ -259,7 +259,7 @@ impl RayAxis {
         Self { next: (border - from) / way, between: (cell / way).abs(), forward }
     }
 
-    /// Advances to the next cell; returns `true` if there is one.
+    /// Advances to the next cell. Returns `false` if there is no further cell.
     fn step(&mut self, number: &mut usize, count: usize) -> bool {
         self.next += self.between;
         let next = if self.forward { *number + 1 } else { number.wrapping_sub(1) };

@@ -4,7 +4,7 @@
 //! clock, no trigonometry of the platform and no unordered maps. Two runs with the same options produce the same bytes.
 #![forbid(unsafe_code)]
 
-/// The alphabet of the target `sim`, which `mdlec bind` writes beside `alphabet.mdle`.
+/// The alphabet of the target `sim`. `mdlec bind` writes this module into the folder of `alphabet.mdle`.
 pub mod alphabet;
 mod battery;
 mod body;

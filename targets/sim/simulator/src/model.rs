@@ -1,4 +1,4 @@
-//! Models of the simulated robots: bodies, and the parts of bodies that can be left out.
+//! Models of the simulated robots: their bodies, and the parts of a model that can be omitted.
 
 mod figures;
 
@@ -13,12 +13,12 @@ use figures::{atrv, ideal, scout};
 /// A body to simulate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Body {
-    /// A body with the size and the motors of a Super Scout. All its sonars ping in every turn and hear the nearest
-    /// object in their cones, and its odometry has no errors.
+    /// A body with the size and the motors of a Super Scout. All its sonars ping in every turn, and detect the nearest
+    /// object in their cones. Its odometry has no errors.
     #[default]
     Ideal,
-    /// A Nomadic Super Scout II. Its sonars fire in turn, miss surfaces that they do not face, and have errors;
-    /// its wheels slip.
+    /// A Nomadic Super Scout II. Its sonars fire one after the other, miss surfaces that they do not face, and have
+    /// errors. Its wheels slip.
     Scout,
     /// An iRobot ATRV-mini: a rectangle of 0.63 m by 0.54 m with 24 sonars on four boards and skid steering.
     Atrv,
@@ -34,24 +34,24 @@ impl fmt::Display for Body {
     }
 }
 
-/// Parts of a body's model that can be left out to see their effect.
+/// Parts of a body's model that can be omitted, in order to see their effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ModelPart {
-    /// Lobe of a sonar. Without it, all objects in a cone of 25° are heard equally.
+    /// Lobe of a sonar. Without it, the sonar detects all objects in a cone of 25° equally well.
     Lobe,
-    /// Mirror-like reflection of surfaces. Without it, surfaces are heard from any angle.
+    /// Mirror-like reflection by surfaces. Without it, sonars detect surfaces from any angle.
     Specular,
-    /// Minimum range. Without it, the sonars hear objects at any distance.
+    /// Minimum range. Without it, the sonars detect objects at any distance.
     Minimum,
     /// Resolution of ranges. Without it, ranges are exact.
     Steps,
-    /// Errors of ranges and missed echoes, which need a seed.
+    /// Errors of ranges, and missed echoes. They need a random seed.
     Noise,
-    /// Random ranges without meaning, which need a seed.
+    /// Random ranges without meaning. They need a random seed.
     Outliers,
     /// Firing order, in which sonars ping one after another. Without it, all sonars ping in every turn.
     Order,
-    /// Slip of the wheels, which needs a seed.
+    /// Slip of the wheels. It needs a random seed.
     Slip,
 }
 
@@ -67,7 +67,7 @@ pub const PARTS: [(&str, ModelPart); 8] = [
     ("slip", ModelPart::Slip),
 ];
 
-/// Model of a body: everything needed to simulate it.
+/// Model of a body, with all data that are needed to simulate it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Model {
     pub(crate) drive: Drive,
@@ -77,7 +77,7 @@ pub(crate) struct Model {
     pub(crate) pack: Pack,
 }
 
-/// Wheels and outline, in metres and seconds.
+/// Wheels and outline of a body, in metres and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Drive {
     /// Form of the body.
@@ -88,7 +88,7 @@ pub(crate) struct Drive {
     pub(crate) fastest: f64,
     /// Acceleration of a wheel, in m/s².
     pub(crate) acceleration: f64,
-    /// Unit of commanded wheel speeds, in m/s; speeds are rounded towards zero to whole numbers of this unit.
+    /// Unit of commanded wheel speeds, in m/s. Speeds are rounded towards zero to whole numbers of this unit.
     pub(crate) unit: f64,
     /// Errors of odometry; `None` for odometry without errors.
     pub(crate) slip: Option<Slip>,
@@ -97,15 +97,15 @@ pub(crate) struct Drive {
 /// Errors of odometry, as standard deviations of normal distributions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Slip {
-    /// Relative error of the distance driven, drawn once for a run; it represents the size of the tyres.
+    /// Relative error of the driven distance. It is drawn once for a run, and represents the size of the tyres.
     pub(crate) way: f64,
-    /// Relative error of the angle turned, drawn once for a run; it represents uncertainty about where the wheels touch
-    /// the floor.
+    /// Relative error of the angle by which the robot turns. It is drawn once for a run, and represents uncertainty
+    /// about where the wheels touch the floor.
     pub(crate) turn: f64,
-    /// Error of the heading, in radians per metre driven, drawn once for a run; it represents unequal wheels.
+    /// Error of the heading, in radians per driven metre. It is drawn once for a run, and represents unequal wheels.
     pub(crate) bend: f64,
-    /// Standard deviation of the heading's random error after a metre driven, in radians; it grows with the square root
-    /// of the distance.
+    /// Standard deviation of the heading's random error after one metre, in radians. It grows with the square root of
+    /// the distance.
     pub(crate) wander: f64,
 }
 
@@ -113,28 +113,28 @@ pub(crate) struct Slip {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hearing {
     pub(crate) transducers: Vec<Transducer>,
-    /// Distance of the transducers from the centre, as laws assume it, in metres.
+    /// Distance of the transducers from the centre that laws assume, in metres.
     pub(crate) ring_radius: f64,
-    /// Distance, along a wall beside the robot, between the points that the two neighbours of the sonar facing the wall
-    /// hear, in metres; `None` if ranges are too coarse to measure a heading.
+    /// Distance between two points on a wall beside the robot, in metres: the points that reflect the pings of the two
+    /// neighbours of the sonar that faces the wall. `None` if ranges are too coarse to measure a heading.
     pub(crate) beside_apart: Option<f64>,
-    /// Angle of the outermost rays from the axis.
+    /// Angle between the outermost rays and the axis.
     pub(crate) half_cone: Radians,
-    /// Maximum angle off the axis at which a surface that faces the sonar is heard; `None` for the angle of the
+    /// Maximum angle off the axis at which a sonar detects a surface that faces it; `None` means the angle of the
     /// outermost rays.
     pub(crate) lobe: Option<Radians>,
-    /// Maximum angle between the axis and the normal of a surface on the axis at which the surface is heard;
-    /// `None` for any angle.
+    /// Maximum angle between the sonar's axis and the normal of a surface on the axis at which the sonar detects the
+    /// surface; `None` means any angle.
     pub(crate) facing: Option<Radians>,
     pub(crate) least: f64,
     pub(crate) most: f64,
-    /// Resolution to which ranges are rounded down, in metres; 0 for exact ranges.
+    /// Resolution of ranges, in metres; ranges are rounded down to it. The value 0 means exact ranges.
     pub(crate) step: f64,
     /// Standard deviation of a range's error, in metres.
     pub(crate) spread: f64,
-    /// Maximum common relative error of all ranges of a run, caused by the temperature of the air.
+    /// Maximum relative error that all ranges of a run have in common. Its cause is the temperature of the air.
     pub(crate) scale: f64,
-    /// Standard deviation of the loudness of an echo, as a fraction of the loudness needed to hear it.
+    /// Standard deviation of the loudness of an echo, as a fraction of the minimum loudness for detecting it.
     pub(crate) fading: f64,
     /// Fraction of pings without an echo, at any distance.
     pub(crate) misses: f64,
@@ -145,7 +145,7 @@ pub(crate) struct Hearing {
     pub(crate) order: Option<FiringOrder>,
 }
 
-/// Firing order: groups of transducers that ping together, one group after another.
+/// Firing order: the groups of transducers that ping together. One group pings after another.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FiringOrder {
     pub(crate) groups: Vec<Vec<usize>>,
@@ -155,20 +155,20 @@ pub(crate) struct FiringOrder {
 /// A sonar transducer on the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transducer {
-    /// Position ahead of the centre, in metres.
+    /// Distance of the transducer ahead of the body's centre, in metres.
     pub(crate) x: f64,
-    /// Position to the left of the centre, in metres.
+    /// Distance of the transducer to the left of the body's centre, in metres.
     pub(crate) y: f64,
     pub(crate) bearing: Radians,
-    /// The sonar, of the paper's sixteen, to which the transducer belongs.
+    /// Sonar to which the transducer belongs, among the paper's sixteen sonars.
     pub(crate) sonar: SonarId,
 }
 
-/// Angle between the axis and the edge of a cone without a lobe.
+/// Angle between the axis and the edge of a sonar's cone, for sonars without a lobe.
 const HALF_CONE: Radians = Radians::from_degrees(12.5);
 
 impl Model {
-    /// Returns the model of a body without some of its parts.
+    /// Creates the model of a body without the given parts.
     pub(crate) fn of(body: Body, without: &[ModelPart]) -> Self {
         let mut model = match body {
             Body::Ideal => ideal(),

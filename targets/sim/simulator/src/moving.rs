@@ -1,7 +1,7 @@
 //! Moving parts of a world: doors that open and close, and boxes and discs that move on a schedule.
 //!
-//! No object moves into the robot. A door that would close on the robot stays open, and a box or disc that would move
-//! into the robot stops in contact until the robot has left. Then the object resumes its schedule with this delay.
+//! No object moves into the robot. A door that would close on the robot stays open. A box or disc that would move into
+//! the robot stops in contact with it until the robot has left. Then the object continues its schedule with this delay.
 
 use crate::footprint::{Footprint, Form};
 use crate::grid::{Hit, Segment};
@@ -9,10 +9,10 @@ use crate::outline::Outline;
 use crate::point::Point;
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
 
-/// Minimum distance to which a moving object approaches the robot, in metres; the bumper feels the object at this
-/// distance.
+/// Minimum distance, in metres, between a moving object and the robot. The bumper detects an object at this distance.
 const STOPS_AT: f64 = 1e-4;
-/// Distance from which an object is far from the robot, in metres; greater than `STOPS_AT` by more than rounding.
+/// Distance, in metres, from which an object is treated as far from the robot. It exceeds `STOPS_AT` by more than
+/// rounding errors.
 const FAR: f64 = 0.01;
 
 /// A moving object.
@@ -29,17 +29,18 @@ pub struct Thing {
 pub enum Schedule {
     /// A door, which is closed except at certain times.
     Open {
-        /// Intervals during which the door is open, each with its begin and end, in seconds. They do not overlap.
+        /// Intervals in which the door is open, each given by its beginning and its end in seconds. The intervals do
+        /// not overlap.
         times: Vec<[f64; 2]>,
-        /// Period after which the times repeat, in seconds; `None` if they do not repeat.
+        /// Period with which the intervals repeat, in seconds; `None` if they do not repeat.
         every: Option<f64>,
     },
     /// A box or disc that moves straight from stop to stop.
     Way {
-        /// Times and positions of the centre: at least one, in order. The object rests before the first stop and after
-        /// the last.
+        /// Stops of the centre, each with its time and position, in order. There is at least one stop. The object rests
+        /// before the first stop and after the last one.
         stops: Vec<Waypoint>,
-        /// `true` if the object continues from the first stop after the last stop.
+        /// `true` if the object continues with the first stop after the last stop.
         repeats: bool,
     },
 }
@@ -49,7 +50,7 @@ pub enum Schedule {
 pub struct Waypoint {
     /// Time of the stop, in seconds.
     pub t: f64,
-    /// Place of the centre.
+    /// Position of the object's centre.
     pub at: Point,
 }
 
@@ -59,7 +60,7 @@ impl Thing {
         self.outline.points.iter().map(move |point| Point { x: point.x + gone.x, y: point.y + gone.y })
     }
 
-    /// Returns the positions between which the centre of the object moves; a door has none.
+    /// Returns the positions between which the centre of the object moves; empty for a door.
     pub(crate) fn way(&self) -> impl Iterator<Item = Point> {
         let stops = match &self.schedule {
             Schedule::Open { .. } => [].as_slice(),
@@ -112,7 +113,7 @@ fn at(stops: &[Waypoint], t: f64) -> Option<Point> {
 #[derive(Debug, Clone)]
 pub(crate) struct Moving {
     schedule: Schedule,
-    /// Time of the object's own clock, in seconds; the clock stops while the object waits for the robot.
+    /// Time of the object's own clock, in seconds. The clock stops while the object waits for the robot.
     t: f64,
     /// Sides of the object at its first position.
     first: Vec<Segment>,
@@ -121,7 +122,7 @@ pub(crate) struct Moving {
     rough: f64,
     /// Sides of the object at its current position; empty for an open door.
     now: Vec<Segment>,
-    /// Centre of a circle around the object at its first position; `moved` is the displacement from there.
+    /// Centre of a circle around the object at its first position. `moved` is the displacement from this position.
     centre: Point,
     radius: f64,
     moved: Option<Point>,
@@ -158,7 +159,7 @@ impl Moving {
         self.moved
     }
 
-    /// Returns the sides of the object at its current place.
+    /// Returns the sides of the object at its current position.
     pub(crate) fn segments(&self) -> impl Iterator<Item = &Segment> {
         self.now.iter()
     }
@@ -191,8 +192,8 @@ impl Moving {
         }
     }
 
-    /// Moves the object to the displacement `moved`, unless this would bring it too close to `body`; returns `true` if
-    /// it has moved there. An object that is already too close may move if it does not come closer.
+    /// Moves the object to the displacement `moved`, unless it would then be too close to `body`. Returns `true` if it
+    /// has moved. An object that is already too close may move if it does not get closer.
     fn is_put(&mut self, moved: Option<Point>, body: &Footprint) -> bool {
         let was = self.moved;
         self.put(moved);
@@ -214,7 +215,8 @@ impl Moving {
         Some(Point { x: self.centre.x + x, y: self.centre.y + y })
     }
 
-    /// Returns the distance of the object from `at`, exact if it is below `most`; infinite for an open door.
+    /// Returns the distance of the object from `at`; infinite for an open door. The distance is exact if it is below
+    /// `most`.
     pub(crate) fn distance(&self, at: Point, most: f64) -> f64 {
         match self.around() {
             Some(around) if apart(around, at) - self.radius < most => {
@@ -224,8 +226,8 @@ impl Moving {
         }
     }
 
-    /// Returns the distance between the object and a body, exact if it is below `most`; infinite for an open
-    /// door.
+    /// Returns the distance between the object and a body; infinite for an open door. The distance is exact if it is
+    /// below `most`.
     pub(crate) fn gap(&self, body: &Footprint, most: f64) -> f64 {
         if let Form::Disc { radius } = body.form {
             return self.distance(body.at(), most + radius) - radius;

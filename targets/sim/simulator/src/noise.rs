@@ -1,16 +1,15 @@
-//! Random numbers of a run. Each purpose has a separate stream, so that leaving out one purpose does not change the
-//! others.
+//! Random numbers of a run. Each purpose has its own stream, so that omitting one purpose does not change the others.
 
 use std::f64::consts::TAU;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// A stream of random numbers, determined by the seed and the purpose.
+/// A stream of random numbers. The seed and the purpose determine it.
 #[derive(Debug, Clone)]
 pub(crate) struct Noise(ChaCha8Rng);
 
-/// Purpose of random numbers; each purpose has its own stream.
+/// Purpose of random numbers. Each purpose has its own stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// Errors of the sonars' ranges.

@@ -9,9 +9,9 @@ pub struct Outline {
     pub name: String,
     /// Corners in order; the last corner of a box equals the first. A disc has 48 corners.
     pub points: Vec<Point>,
-    /// `true` for a box or a disc, whose inside is solid; a wall has no thickness.
+    /// `true` for a box or a disc, whose inside is solid. A wall has no thickness.
     pub solid: bool,
-    /// Roughness of the surface, from 0 to 1 as in `World`.
+    /// Roughness of the surface, from 0 to 1, as defined for `World`.
     pub rough: f64,
 }
 
@@ -21,7 +21,8 @@ impl Outline {
         self.points.iter().zip(self.points.iter().skip(1)).map(move |(from, to)| (self, *from, *to))
     }
 
-    /// Returns `true` if `place` is inside: a line from it crosses an odd number of sides.
+    /// Returns `true` if `place` is inside the outline. This is the case if a line from it crosses an odd number of
+    /// sides.
     pub(crate) fn surrounds(&self, place: Point) -> bool {
         let crossed = self.segments().filter(|(_, from, to)| {
             let between = (from.y > place.y) != (to.y > place.y);

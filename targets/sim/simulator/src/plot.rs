@@ -1,5 +1,5 @@
-//! Pictures of a run: for `--plot`, the floor with the path driven and the positions where atoms began; for `--record`,
-//! a moving picture.
+//! Pictures of a run. For `--plot`, they show the floor with the driven path and the positions where atoms began; for
+//! `--record`, a moving picture.
 
 mod chart;
 mod colours;

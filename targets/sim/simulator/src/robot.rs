@@ -24,7 +24,7 @@ pub struct Simulated {
     body: Body,
     ring: Ring,
     shape: Shape,
-    /// Drift of the robot's odometry, measured at walls.
+    /// Drift of the robot's odometry heading, estimated from walls.
     compass: Compass,
     battery: Battery,
     charger: Option<Charger>,
@@ -33,7 +33,7 @@ pub struct Simulated {
     /// Number of bumper switches.
     switches: u8,
     period: Duration,
-    /// Number of exchanges so far; the first is at time 0.
+    /// Number of exchanges so far. The first exchange is at time 0.
     exchanges: u64,
 }
 
@@ -42,7 +42,7 @@ pub struct Simulated {
 pub struct Make {
     /// The body.
     pub body: model::Body,
-    /// Parts of the body that are left out.
+    /// Parts of the body's model that are omitted.
     pub without: Vec<ModelPart>,
     /// Random seed for sensor and wheel errors; `None` for a robot without errors.
     pub seed: Option<u64>,
@@ -74,8 +74,8 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Simulated {
-    /// Returns a robot with an ideal body at rest at `start` in `world`, where its odometry begins. Its sonars are
-    /// exact, or noisy if a seed is given.
+    /// Creates a robot with an ideal body, at rest at `start` in `world`, where its odometry is zero. Its sonars are
+    /// exact; if a random seed is given, they are noisy.
     ///
     /// # Errors
     /// Fails if the robot cannot start at `start`.
@@ -83,7 +83,7 @@ impl Simulated {
         Self::with(&Make { seed, ..Make::default() }, world, start, period)
     }
 
-    /// Returns a robot with the settings `make` at rest at `start` in `world`, where its odometry begins.
+    /// Creates a robot with the settings `make`, at rest at `start` in `world`, where its odometry is zero.
     ///
     /// # Errors
     /// Fails if the robot cannot start at `start`.
@@ -117,7 +117,8 @@ impl Simulated {
         })
     }
 
-    /// Returns a robot with the body, the world and the current battery of this one, at rest at `start`.
+    /// Creates another robot with the same body, the same world and the current battery of this one, at rest at
+    /// `start`.
     ///
     /// # Errors
     /// Fails if the robot cannot start at `start` in `world`, which must be the world of this robot.
@@ -135,7 +136,7 @@ impl Simulated {
     }
 
     /// Returns the maximum distance, in metres, between the robot's centre and the centre of a similar robot that its
-    /// sonars can hear.
+    /// sonars can detect.
     #[must_use]
     pub fn hears(&self) -> f64 {
         let radius = self.footprint().form.radius();
@@ -156,7 +157,7 @@ impl Simulated {
         self.body.pose
     }
 
-    /// Sets the charge of the robot's battery, from 0 to 1; the battery is full by default.
+    /// Sets the charge of the robot's battery, from 0 to 1. By default, the battery is full.
     #[must_use]
     pub fn charged(mut self, charge: f64) -> Self {
         self.battery.charge(charge);
@@ -168,8 +169,8 @@ impl Simulated {
         self.battery.charge(charge);
     }
 
-    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world, which
-    /// is `None` if the world has no charger.
+    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world
+    /// (`None` if the world has no charger).
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.battery.charge(charge);
         self.charger = charger;
@@ -185,7 +186,7 @@ impl Simulated {
         self.charger.is_some_and(|charger| charger.holds(&self.body.pose))
     }
 
-    /// Returns the area that the robot covers, as other robots hear and touch it.
+    /// Returns the area that the robot covers. Other robots detect and touch this area.
     #[must_use]
     pub fn footprint(&self) -> Footprint {
         self.body.footprint()
@@ -198,18 +199,18 @@ impl Simulated {
         self.walls.gap(&self.footprint(), reach)
     }
 
-    /// Sets the positions of the other robots in the world, which the robot hears and cannot pass through.
+    /// Sets the positions of the other robots in the world. The robot detects them, and cannot pass through them.
     pub fn see(&mut self, others: &[Footprint]) {
         self.walls.put_others(others);
     }
 
-    /// Swaps the other robots, which this robot hears and cannot pass through, with those in `others`.
+    /// Exchanges the other robots, which this robot detects and cannot pass through, with those in `others`.
     pub fn swap_others(&mut self, others: &mut Others) {
         self.walls.swap_others(others);
     }
 
-    /// Returns the last ping of each transducer, in the order of the body's model. These are the data of a robot's
-    /// sonar boards, before a driver combines them into sixteen sonars.
+    /// Returns the last ping of each transducer, in the order of the body's model. A real robot's sonar boards provide
+    /// such data, before a driver combines them into sixteen sonars.
     #[must_use]
     pub fn heard(&self) -> &[Heard] {
         &self.ring.heard
@@ -221,7 +222,7 @@ impl Simulated {
         self.ring.order()
     }
 
-    /// Makes these sonars ping from the next exchange on, one after another; has no effect on a body whose sonars ping
+    /// Sets the sonars that ping one after another from the next exchange on. Has no effect on a body whose sonars ping
     /// together.
     pub fn order_sonars(&mut self, order: &[u8]) {
         if self.ring.order().is_some() {
@@ -248,7 +249,7 @@ impl Simulated {
         Nanos(self.exchanges.saturating_mul(period))
     }
 
-    /// Drives for the period that ends at `now`; each sonar pings when it is due.
+    /// Drives for the period that ends at the time `now`. Each sonar pings when it is due.
     fn drive(&mut self, input: &Twist, now: Nanos) {
         let begins = Nanos(now.0.saturating_sub(u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX)));
         if self.exchanges == 0 {
@@ -271,8 +272,8 @@ impl Simulated {
         }
     }
 
-    /// Drives for one period with `input`, the first half of an exchange. Robots that share a world all move before any
-    /// of them takes its output.
+    /// Drives for one period with `input`, which is the first half of an exchange. If several robots share a world, all
+    /// of them move before the output of any of them is computed.
     ///
     /// # Errors
     /// Fails if the input is not finite.
@@ -289,7 +290,7 @@ impl Simulated {
         Ok(())
     }
 
-    /// Takes the output after [`Simulated::moves`], the second half of an exchange.
+    /// Returns the output after [`Simulated::moves`]; this is the second half of an exchange.
     pub fn senses(&mut self) -> Sensed {
         let now = self.now();
         self.exchanges = self.exchanges.saturating_add(1);
@@ -309,7 +310,7 @@ impl Simulated {
         }
     }
 
-    /// Moves the robot and the moving objects of the world.
+    /// Moves the robot and the moving objects of the world for a time of `seconds`.
     fn advance(&mut self, input: &Twist, seconds: f64) {
         if seconds <= 0.0 {
             return;

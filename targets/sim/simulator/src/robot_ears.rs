@@ -1,4 +1,4 @@
-//! The ears of a simulated robot: two microphones at its centre, which hear the sound sources of its world.
+//! The ears of a simulated robot: two microphones at its centre, which receive the sound sources of its world.
 
 use mdle_runtime::{Nanos, Pose, Radians};
 use mdle_sound::{EarPose, Ears, RATE, SoundRoom, SphericalHead};
@@ -8,12 +8,12 @@ use crate::world::World;
 /// The ears of a robot.
 pub struct RobotEars {
     ears: Ears,
-    /// Pose at the previous exchange, and number of samples up to then; `None` before the first exchange.
+    /// Pose at the previous exchange, and number of samples up to this exchange; `None` before the first exchange.
     before: Option<(Pose, u64)>,
 }
 
 impl RobotEars {
-    /// Returns the ears of a robot with a head of this radius, in metres; `None` if the world has no sound source.
+    /// Creates the ears of a robot with a head of this radius, in metres; `None` if the world has no sound source.
     #[must_use]
     pub fn new(world: &World, radius: f64, seed: u64) -> Option<Self> {
         if world.sounds.is_empty() {
@@ -40,7 +40,7 @@ impl RobotEars {
     }
 }
 
-/// Returns the acoustic room of a world: the rectangle around its walls.
+/// Returns the acoustic room of a world, which is the rectangle around its walls.
 pub(crate) fn room(world: &World) -> SoundRoom {
     let mut places = world.segments().flat_map(|(_, from, to)| [from, to]);
     let Some(first) = places.next() else { return SoundRoom::open() };

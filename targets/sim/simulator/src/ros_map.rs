@@ -1,8 +1,8 @@
 //! Creates worlds from ROS maps as `map_server` saves them: a YAML file with a few keys, and an image.
 //!
-//! Pixels darker than the threshold are occupied; walls are where they border on other pixels. The pixel steps of a
-//! slanted wall are smoothed, since a sonar would not hear the wall otherwise. Unknown pixels are floor. The robot
-//! starts at the origin of the map's frame, where the mapping robot began.
+//! Pixels darker than the threshold are occupied. Walls are where occupied pixels border on other pixels. The pixel
+//! steps of a slanted wall are smoothed, because a sonar would otherwise receive no echo of the wall. Unknown pixels
+//! are floor. The robot starts at the origin of the map's frame, where the robot began that made the map.
 
 mod contours;
 mod header;
@@ -21,7 +21,7 @@ pub use header::Header;
 use image::Image;
 
 impl Header {
-    /// Returns the world of this header and of the image with the contents `bytes`; `file` is the name of the image in
+    /// Creates the world that this header and an image describe. `bytes` contains the image file; `file` is its name in
     /// error messages.
     ///
     /// # Errors

@@ -1,4 +1,5 @@
-//! The sonars: the order in which they ping, and the ranges that they measure, with errors.
+//! Simulates the sonars: the order in which they ping, and the ranges that they measure, including errors of
+//! measurement.
 
 mod echo;
 #[cfg(test)]
@@ -19,7 +20,7 @@ pub(crate) struct Ring {
     pub(crate) pings: [Pings; SONARS],
     /// Model of the sonars, which all robots with the same body share.
     pub(crate) hearing: Arc<Hearing>,
-    /// Latest ping of each transducer, with the range measured from the transducer itself.
+    /// Latest ping of each transducer. The range is measured from the transducer itself.
     pub(crate) heard: Vec<Heard>,
     errors: Option<SonarErrors>,
     /// Next group to ping, and the time of its ping; not used if all sonars ping in every turn.
@@ -35,13 +36,13 @@ pub struct Heard {
     pub at: Nanos,
 }
 
-/// Errors of a run with a random seed.
+/// Random errors of the ranges of a run.
 #[derive(Debug, Clone)]
 struct SonarErrors {
     ranges: Noise,
     outliers: Noise,
     fading: Noise,
-    /// Factor of all ranges of the run.
+    /// Factor by which all ranges of the run are multiplied.
     scale: f64,
 }
 
@@ -79,7 +80,7 @@ impl Ring {
         groups.iter().map(sonar).collect()
     }
 
-    /// Makes these sonars ping from now on, one after another, if the sonars ping in turn.
+    /// Sets the sonars that ping from now on, one after another. Has no effect if all sonars ping in every turn.
     pub(crate) fn reorder(&mut self, sonars: &[u8]) {
         let transducers = &self.hearing.transducers;
         let of = |sonar: &u8| transducers.iter().position(|known| known.sonar.number() == usize::from(*sonar));
@@ -90,7 +91,8 @@ impl Ring {
         }
     }
 
-    /// Fires the sonars that are due at `at`, on a robot at `pose` whose odometry reports `odometry`.
+    /// Makes the sonars ping that are due at the time `at`. The robot is at `pose`, and its odometry reports
+    /// `odometry`.
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
         let Some(FiringOrder { groups, gap }) = &self.hearing.order else {
             for number in 0..self.heard.len() {
@@ -119,8 +121,8 @@ impl Ring {
         self.hearing.order.as_ref()?.groups.get(group)?.get(place).copied()
     }
 
-    /// Makes the sonars ping until each has as many pings as an output stores, as if the robot had been switched on
-    /// some time before the plan began.
+    /// Makes the sonars ping until each sonar has made as many pings as an output stores, as if the robot had been
+    /// switched on some time before the plan began.
     pub(crate) fn warm_up(&mut self, pose: &Pose, odometry: Pose, walls: &Walls) {
         let Some(order) = &self.hearing.order else { return };
         for _ in 0..order.groups.len() * mdle_runtime::PINGS_KEPT {
@@ -159,8 +161,8 @@ impl Ring {
 }
 
 impl SonarErrors {
-    /// Returns the measured range for the exact range `exact`; `None` without an echo. Every ping draws the same number
-    /// of random numbers, regardless of its result.
+    /// Returns the measured range for the exact range `exact`; `None` if there is no echo. Every ping uses the same
+    /// number of random numbers, whatever its result is.
     fn of(&mut self, exact: Option<f64>, hearing: &Hearing) -> Option<f64> {
         let missed = self.ranges.uniform() < hearing.misses;
         let error = hearing.spread * self.ranges.normal();
@@ -188,8 +190,8 @@ fn is_on_the_ring(transducer: &Transducer, ring_radius: f64) -> bool {
         && (libm::hypot(transducer.x, transducer.y) - ring_radius).abs() < 1e-9
 }
 
-/// Converts a transducer's range to a range from the ring: measured along the transducer's axis from the point nearest
-/// to the centre, minus the ring's radius.
+/// Converts a range from a transducer to a range from the ring of sonars. The result is measured along the transducer's
+/// axis, from the point of the axis that is nearest to the robot's centre, and is reduced by the ring's radius.
 fn as_of_the_ring(range: f64, transducer: &Transducer, hearing: &Hearing) -> f64 {
     if is_on_the_ring(transducer, hearing.ring_radius) {
         return range;
@@ -208,7 +210,8 @@ fn stepped(range: f64, step: f64) -> f64 {
     if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
 }
 
-/// Returns the ping of this sonar, with the nearest of its transducers' last echoes.
+/// Returns the ping of this sonar. Its range is the shortest of the last ranges of its transducers, measured from the
+/// ring; `None` if none of them received an echo.
 fn nearest(hearing: &Hearing, heard: &[Heard], sonar: usize, at: Nanos, odometry: Pose) -> Ping {
     let speaking = hearing.transducers.iter().zip(heard).filter(|(transducer, _)| transducer.sonar.number() == sonar);
     let heard = speaking.filter_map(|(transducer, last)| {

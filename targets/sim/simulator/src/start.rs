@@ -11,7 +11,7 @@ use crate::point::Point;
 use crate::walls::{self, Walls};
 use crate::world::World;
 
-/// Number of directions in which an enclosed position must have a wall.
+/// Number of directions in which the search looks for walls; an enclosed position has a wall in each of them.
 const LOOKS: u16 = 180;
 /// Range of the search for walls, in metres, which exceeds any world.
 const SIGHT: f64 = 1e7;
@@ -25,11 +25,11 @@ pub struct Start(pub Pose);
 pub enum StartError {
     /// The text is not `x,y,deg`.
     Malformed,
-    /// A part is not a number with a unit; the sentence says what to type instead.
+    /// A part is not a number with a unit; the sentence contains the correction.
     Quantity(String),
-    /// A body of this form would overlap this wall or box.
+    /// A body of this form would overlap the wall or box with this name.
     Overlaps(Form, String),
-    /// The centre is inside this box.
+    /// The centre of the robot is inside the box with this name.
     Inside(String),
     /// The pose is outside the walls that enclose the world's own start pose.
     OffTheFloor,

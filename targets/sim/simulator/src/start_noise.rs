@@ -25,7 +25,7 @@ impl StartNoise {
     /// Parses `metres,degrees`.
     ///
     /// # Errors
-    /// Fails if the text is not a length and an angle within their limits; the message says what to type instead.
+    /// Fails if the text is not a length and an angle within their limits; the message contains the correction.
     pub fn read(text: &str) -> Result<Self, String> {
         let sentence = "expected metres,degrees: up to 100 and 180, as in `0.1,5`";
         let (metres, degrees) = text.split_once(',').ok_or(sentence)?;

@@ -3,12 +3,12 @@
 use crate::grid::Segment;
 use crate::point::Point;
 
-/// Distance below which the end of a segment counts as a point of another segment, in metres.
+/// Distance below which the end of a segment is treated as a point of another segment, in metres.
 const TOGETHER: f64 = 1e-3;
 /// Cosine of the maximum angle at which two segments form a smooth surface: 30°.
 const SMOOTH: f64 = 0.866;
 
-/// Form of one end of a segment.
+/// Situation of one end of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum SegmentEnd {
     /// The end is free.
@@ -19,7 +19,7 @@ pub(crate) enum SegmentEnd {
     Meets(Point),
 }
 
-/// Forms of both ends of a segment; the end at `from` is first.
+/// Situation of both ends of a segment; the end at `from` is first.
 pub(crate) type Ends = [SegmentEnd; 2];
 
 /// The surface that a ray has hit.
@@ -36,15 +36,15 @@ pub(crate) struct Surface {
     pub(crate) rough: f64,
 }
 
-/// Returns the form of both ends of `segment` among `others`, which may contain the segment itself.
+/// Returns the situation of both ends of `segment` among the segments `others`, which may contain the segment itself.
 pub(crate) fn ends<'s>(segment: &Segment, others: impl Iterator<Item = &'s Segment>) -> Ends {
     let mut meeting = Meeting::of(*segment);
     others.for_each(|other| meeting.touched(other));
     meeting.ends()
 }
 
-/// The ends of a segment, with the segments found at each end so far. The memory needed does not depend on the number
-/// of segments.
+/// The ends of a segment, and the situation of each as far as it is known. The memory needed does not depend on the
+/// number of segments.
 pub(crate) struct Meeting {
     segment: Segment,
     ends: [(SegmentEnd, Option<Segment>); 2],
@@ -55,7 +55,7 @@ impl Meeting {
         Self { segment, ends: [(SegmentEnd::Edge, None); 2] }
     }
 
-    /// Adds a segment that may touch an end; the segment may be given several times.
+    /// Adds a segment that may touch an end. The same segment may be added several times.
     pub(crate) fn touched(&mut self, other: &Segment) {
         let places = [self.segment.from, self.segment.to()];
         if *other == self.segment {
@@ -76,7 +76,7 @@ impl Meeting {
     }
 }
 
-/// Returns the form of a segment's end at `at`, which `other` touches.
+/// Returns the situation of a segment's end at the point `at`, which the segment `other` touches.
 fn met(other: &Segment, at: Point) -> SegmentEnd {
     let way = |sign: f64| {
         let length = libm::hypot(other.along.x, other.along.y);
@@ -92,7 +92,7 @@ fn met(other: &Segment, at: Point) -> SegmentEnd {
 }
 
 /// Returns the surface that a ray in the unit direction `way` hits at the point `at` of `segment`, after `range`
-/// metres. The surface is smooth.
+/// metres. The roughness of the returned surface is 0.
 pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Point, way: Point, range: f64) -> Surface {
     let length = libm::hypot(segment.along.x, segment.along.y);
     let along = Point { x: segment.along.x / length, y: segment.along.y / length };

@@ -1,4 +1,4 @@
-//! The record of a run for its pictures: the path driven, the positions where atoms began, the echoes, and the
+//! The record of a run for its pictures: the driven path, the positions where atoms began, the echoes, and the
 //! contacts.
 
 mod ways;
@@ -27,7 +27,7 @@ pub(crate) struct Trail {
     pub(crate) here: Pose,
     /// Current displacement of each moving object of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Point>>,
-    /// The path driven, divided by atoms.
+    /// The driven path, divided by atoms.
     pub(crate) ways: Ways,
     /// Texts about the run, for titles.
     pub(crate) about: About,
@@ -45,7 +45,7 @@ pub(crate) struct Trail {
     pub(crate) frames: Option<Frames>,
     /// The other robots of a fleet; empty if there is only one robot.
     pub(crate) companions: Vec<Companion>,
-    /// Word for what drives the parts of the path: `atom`, or `robot` in a fleet.
+    /// Word for the units that drive the parts of the path: `atom`, or `robot` in a fleet.
     pub(crate) kind: &'static str,
 }
 
@@ -120,7 +120,7 @@ impl Trail {
         }
     }
 
-    /// Records that an atom begins at the robot's pose; `number` is its state in the first pass of the
+    /// Records that an atom begins at the robot's pose; `number` is the number of its state in the first pass of the
     /// enclosing loops.
     pub(crate) fn began(&mut self, number: u64, law: &str, t: Nanos) {
         self.ways.began(number, law, t, Point::of(&self.here));
@@ -135,14 +135,14 @@ impl Trail {
         self.about.end = format!("{how} after {:.1} s: {by}", t.seconds());
     }
 
-    /// Returns all recorded places.
+    /// Returns all recorded positions.
     pub(crate) fn places(&self) -> impl Iterator<Item = Point> {
         self.ways.places().chain([Point::of(&self.here)])
     }
 }
 
-/// Returns, for each sonar, the floor position of its latest echo, placed on the axis of the sonar's cone, or `None` if
-/// the sonar has not pinged since `before`.
+/// Returns, for each sonar, the floor position of its latest echo, assuming that the echo comes from the axis of the
+/// sonar's cone; `None` if the sonar has not pinged since the time `before`.
 #[must_use]
 pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Point>; SONARS] {
     let mut echoes = [None; SONARS];
@@ -160,8 +160,8 @@ pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Po
     echoes
 }
 
-/// Converts `then`, a pose by odometry, to a pose on the floor. The robot's current pose is `here` on the floor and
-/// `odometry` by odometry.
+/// Converts the pose `then` from the frame of the odometry to the floor. In these two frames, the robot's current pose
+/// is `odometry` and `here`.
 fn on_the_floor(then: &Pose, here: &Pose, odometry: &Pose) -> Pose {
     let turned = here.theta.0 - odometry.theta.0;
     let (x, y) = (then.x.0 - odometry.x.0, then.y.0 - odometry.y.0);

@@ -16,7 +16,8 @@ use crate::world::World;
 /// about a second.
 const PAIRS_MOST: u64 = 100_000_000;
 
-/// Distance outside a cone at which a robot still counts as inside, in metres; larger than rounding errors.
+/// Maximum distance outside a cone at which a robot is still treated as inside, in metres. It exceeds the rounding
+/// errors.
 const BESIDE: f64 = 1e-6;
 
 /// Walls of a world at a certain time.
@@ -43,13 +44,13 @@ struct Standing {
 /// The other robots near a robot.
 #[derive(Debug, Clone, Default)]
 pub struct Others {
-    /// Robots that its sonars may hear.
+    /// Robots from which its sonars may receive an echo.
     pub heard: Vec<Footprint>,
     /// Robots that its body may touch.
     pub touched: Vec<Footprint>,
 }
 
-/// Obstacles that rays may hit, other than moving objects.
+/// Obstacles that rays may hit, in addition to the moving objects.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reached<'o> {
     pub(crate) others: &'o [Footprint],

@@ -9,7 +9,7 @@ use crate::moving::Thing;
 use crate::outline::Outline;
 use crate::point::Point;
 
-/// Maximum number of walls and sides; preparing a million of them takes a second.
+/// Maximum number of walls and sides; preparing that many takes a second.
 const SEGMENTS_MOST: usize = 1_000_000;
 
 /// Surroundings of the simulated robot. All coordinates are finite, and every wall has a positive length.
@@ -30,9 +30,10 @@ pub struct World {
     /// Reverberation time in which sound decays by 60 dB, in seconds; 0 if nothing reflects sound.
     pub t60: f64,
     /// Default roughness of the other robots and of the outlines and objects of a file, from 0 (as smooth as in the
-    /// body's model) to 1 (heard by sonars at any angle).
+    /// body's sonar model) to 1 (detected by sonars at any angle).
     pub rough: f64,
-    /// Number of leading `outlines` that are contours of a map; a place inside an odd number of contours is solid.
+    /// Number of leading `outlines` that are contours of a map; a position inside an odd number of contours is
+    /// occupied.
     pub(crate) contours: usize,
 }
 
@@ -53,7 +54,7 @@ impl World {
         }
     }
 
-    /// Returns the box, disc or contour that contains `place`; `None` if the place is free.
+    /// Returns the box, disc or contour that contains the position `place`; `None` if this position is free.
     pub(crate) fn solid(&self, place: Point) -> Option<&Outline> {
         let around = || self.outlines.iter().take(self.contours).filter(|outline| outline.surrounds(place));
         if around().count() % 2 == 1 {
@@ -63,9 +64,9 @@ impl World {
         outlines.into_iter().find(|outline| outline.solid && outline.surrounds(place))
     }
 
-    /// Returns the name of the wall, box or disc that keeps robots of this radius, in metres, off a charger; `None` if
-    /// the charger can be reached. The obstacle contains the position of a robot on the charger, or is closer to it
-    /// than the radius.
+    /// Returns the name of the wall, box or disc that prevents robots of this radius, in metres, from reaching a
+    /// charger; `None` if the charger can be reached. The obstacle contains the position of a robot on the charger, or
+    /// is closer to it than the radius.
     pub(crate) fn obstacle_at(&self, charger: &Charger, radius: f64) -> Option<&str> {
         let place = Point::of(&charger.pose);
         let near = || {
@@ -89,7 +90,8 @@ impl World {
         }
     }
 
-    /// Returns all corners of the fixed outlines, and of the moving objects at each of their stops.
+    /// Returns the positions of all corners of the fixed outlines, and of all corners of the moving objects at each of
+    /// their stops.
     pub fn places(&self) -> impl Iterator<Item = Point> {
         let standing = self.outlines.iter().flat_map(|outline| outline.points.iter().copied());
         standing.chain(self.things.iter().flat_map(Thing::places))

@@ -24,7 +24,7 @@ impl fmt::Display for WorldError {
 impl std::error::Error for WorldError {}
 
 impl WorldError {
-    /// Returns the error at a line and column, counted from 1; `None` if the error concerns the whole file.
+    /// Creates an error at a line and column, counted from 1. With `None`, the error concerns the whole file.
     pub(crate) fn new(file: &str, place: Option<(usize, usize)>, what: impl Into<String>) -> Self {
         Self { file: file.to_owned(), place, what: what.into() }
     }

@@ -5,8 +5,8 @@ use crate::world::World;
 use crate::world_error::WorldError;
 use crate::world_file;
 
-/// Names and texts of the built-in worlds. The first is the floor of the paper's tour, including the box in the
-/// hallway.
+/// Names and texts of the built-in worlds. The first is the office floor of the tour in the paper, including the box in
+/// the hallway.
 const WORLDS: [(&str, &str); 4] = [
     ("office", include_str!("../worlds/office.toml")),
     ("maze", include_str!("../worlds/maze.toml")),
@@ -32,10 +32,10 @@ impl World {
         Header::parse(file, text)?.world(image, bytes)
     }
 
-    /// Returns the office floor of the paper's tour.
+    /// Returns the office floor of the tour in the paper.
     ///
     /// # Errors
-    /// Does not fail, as a test confirms: the world is a file in the same format as a user's file.
+    /// Does not fail, as a test confirms. The text of the world has the same format as the file of a user.
     pub fn office() -> Result<Self, WorldError> {
         let [(_, office), ..] = WORLDS;
         Self::parse("the office floor", office)

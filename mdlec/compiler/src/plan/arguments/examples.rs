@@ -5,7 +5,7 @@ use crate::alphabet::{Declaration, Param, ParameterKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Name, Number};
 
-/// Returns an example value for a parameter; `None` for a name that only the user can know.
+/// Returns an example value for a parameter; `None` if the value is a name that only the user can know.
 pub(in crate::plan) fn example(param: &Param) -> Option<String> {
     let value = match param.kind {
         ParameterKind::Length => "1m".to_owned(),
@@ -24,8 +24,8 @@ pub(in crate::plan) fn example(param: &Param) -> Option<String> {
     Some(value)
 }
 
-/// Returns the number of the sonar whose range a name denotes, as in the paper's `align r_7 r_9`; `None` for
-/// any other name.
+/// Returns the number of the sonar whose range the name denotes, as in the paper's `align r_7 r_9`; `None` if the name
+/// does not denote a range.
 pub(super) fn sonar<'s>(name: &Name<'s>) -> Option<Number<'s>> {
     let digits = name.node.strip_prefix('r').map(|index| index.strip_prefix('_').unwrap_or(index))?;
     let is_index = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
@@ -43,7 +43,7 @@ pub(super) fn bits_apart(call: &Call, declaration: &Declaration) -> Option<Strin
     (bits.len() == *length as usize).then(|| format!("{} {bits}", call.name))
 }
 
-/// Reports two arguments in the wrong order, as their units show.
+/// Reports two arguments that are in the wrong order, as shown by their units.
 pub(super) fn swapped(call: &Call, found: &[Diagnostic], fits: impl Fn(&Call) -> bool) -> Option<Diagnostic> {
     let [first, second] = call.args else { return None };
     if found.len() != 2 || found.iter().any(|found| found.code != Code::E0303) {

@@ -1,4 +1,4 @@
-//! Converts numbers in arguments: checks their units and ranges, and reports errors in both.
+//! Converts numbers in arguments, checks their units and ranges, and reports errors in them.
 
 use super::ranges::{limit, meant_in_range};
 use super::{Fitted, Fitting, Value};
@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Decimal;
 use crate::syntax::tree::Number;
 
-/// Largest whole number up to which a 64-bit float represents every whole number.
+/// Largest whole number up to which `f64` represents every whole number exactly.
 const WHOLE: i64 = 1 << 53;
 
 impl Fitting<'_> {
@@ -97,7 +97,7 @@ impl Fitting<'_> {
         Err(meant_in_range(Diagnostic::new(Code::E0304, message, number.span, here), number, param).into())
     }
 
-    /// Reports the only value that the range of a parameter excludes.
+    /// Reports a number that is the only value excluded from the parameter's range.
     fn excluded(&self, number: &Number, param: &Param, value: f64) -> Diagnostic {
         let unit = param.unit.map(|unit| unit.name).unwrap_or_default();
         let (quark, name) = (&self.declaration.name, &param.name);

@@ -1,16 +1,17 @@
-//! Writes messages about numbers out of range: the text of limits, and the number that was probably meant.
+//! Writes messages about numbers that are out of range: the text of limits, and the number that the user probably
+//! meant.
 
 use crate::alphabet::{Param, Unit};
 use crate::diagnostic::Diagnostic;
 use crate::syntax::tree::Number;
 
-/// Writes a limit of a range; a large limit is written as `1e10`.
+/// Returns the text of a limit of a range. A large limit is written as `1e10`.
 pub(super) fn limit(value: f64) -> String {
     if value.abs() >= 1e7 { format!("{value:e}") } else { value.to_string() }
 }
 
-/// Appends help to a message about a number out of range, if the number would be in range with degrees instead
-/// of radians, or without its sign.
+/// Appends help to a message about a number that is out of range, if the number would be in range in degrees instead of
+/// radians, or without its sign.
 pub(super) fn meant_in_range(report: Diagnostic, number: &Number, param: &Param) -> Diagnostic {
     let (digits, own) = (number.digits(), number.unit().or(param.unit.map(|unit| unit.name)).unwrap_or_default());
     let fits = |digits: &str, unit: &str| {

@@ -1,4 +1,4 @@
-//! Reports units that are separated from their numbers, so that they were read as separate arguments.
+//! Reports units that are separated from their numbers by a space, and so were read as separate arguments.
 
 use super::Arguments;
 use crate::alphabet::Unit;
@@ -6,8 +6,8 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::nearest_unit;
 use crate::syntax::tree::{Arg, Call, Number};
 
-/// Reports the units of `call` that are separated from their numbers, and the errors that the call still has when they
-/// are joined; `None` if no unit is separated.
+/// Reports the units of `call` that are separated from their numbers, and the errors that remain when they are joined;
+/// `None` if no unit is separated.
 pub(super) fn apart(
     call: &Call,
     fitted: impl Fn(&Call) -> Result<Arguments, Vec<Diagnostic>>,
@@ -41,7 +41,7 @@ pub(super) fn apart(
     Some(apart.chain(wrong.iter().cloned()).collect())
 }
 
-/// A number with a unit after a space.
+/// A number whose unit follows after a space.
 #[derive(Clone, Copy)]
 struct Apart<'s> {
     number: Number<'s>,

@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::moves;
 use crate::syntax::tree::{Arg, Call, Number};
 
-/// Reports that `call` has the wrong number of arguments; `declaration` needs at least `needed`.
+/// Reports that `call` has the wrong number of arguments; `declaration` needs at least `needed` arguments.
 pub(super) fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnostic {
     let most = declaration.params.len();
     let takes = match (needed, most) {

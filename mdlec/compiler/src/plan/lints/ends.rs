@@ -1,10 +1,10 @@
-//! Warns about atoms that never end, and about elements that are unreachable because an earlier element never ends
+//! Warns about atoms that never end, and about elements that are never reached because an earlier element never ends
 //! (W0201 and W0202).
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 
-/// Warns about atoms that never end and about unreachable elements.
+/// Warns about atoms that never end, and about elements that are never reached.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut ends = EndsLint { plan, pause: 10.0, found };
     ends.enter(&plan.root.interrupt);
@@ -18,7 +18,7 @@ pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
 
 struct EndsLint<'p, 'f> {
     plan: &'p Plan,
-    /// Duration, in seconds, proposed for an atom; it is shorter than the timers of all enclosing scopes.
+    /// Duration, in seconds, that is proposed for an atom. It is shorter than the timers of all enclosing scopes.
     pause: f64,
     found: &'f mut Vec<Diagnostic>,
 }
@@ -26,14 +26,14 @@ struct EndsLint<'p, 'f> {
 /// Reason why an element never ends by itself.
 #[derive(Clone, Copy)]
 struct Endless<'p> {
-    /// Atom that never ends; `None` for an endless loop, which counts as intended.
+    /// Atom that never ends; `None` for an endless loop, which is assumed to be intended.
     atom: Option<&'p Atom>,
-    /// `true` if a warning has been given before.
+    /// `true` if the warning has already been given.
     is_reported: bool,
 }
 
 impl<'p> EndsLint<'p, '_> {
-    /// Shortens the proposed duration so that it is below the timers of this scope's interrupt.
+    /// Reduces the proposed duration to a value below the timers of this scope's interrupt.
     fn enter(&mut self, interrupt: &Interrupt) {
         for operand in interrupt.condition.operands() {
             if let Condition::Wait { nanos, .. } = operand

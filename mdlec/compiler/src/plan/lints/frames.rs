@@ -1,4 +1,4 @@
-//! Warns about a `FRAME here` that contains no law that turns to a heading or drives at a bearing (W0207).
+//! Warns about a `FRAME here` if no law inside it turns to a heading or drives at a bearing (W0207).
 
 use crate::alphabet::has_direction;
 use crate::diagnostic::{Code, Diagnostic};
@@ -15,7 +15,7 @@ struct FrameLint<'p, 'f> {
 }
 
 impl<'p> FrameLint<'p, '_> {
-    /// Returns the first atom of a sequence, and `true` if a law in the sequence may use its frame.
+    /// Returns the first atom of a sequence, and `true` if a law in the sequence may use the frame.
     fn sequence(&mut self, body: &'p [Node]) -> (Option<&'p Atom>, bool) {
         body.iter().fold((None, false), |(first, is_used), node| {
             let (own, uses) = self.node(node);
@@ -45,7 +45,7 @@ impl<'p> FrameLint<'p, '_> {
     }
 }
 
-/// Returns `true` if a law may use a direction of its frame.
+/// Returns `true` if a law may use a direction that is relative to its frame.
 fn names_a_direction(law: &Quark) -> bool {
     let kinds = law.args.iter().filter_map(|argument| match argument {
         Value::Quantity { kind, .. } | Value::Name(kind, _) => Some(*kind),

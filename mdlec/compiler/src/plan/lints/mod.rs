@@ -1,7 +1,7 @@
-//! Warns about valid plans that probably do not mean what the author wanted (docs/src/reference/language.md, 5: W02xx
-//! to W04xx).
+//! Warns about valid plans that probably do not mean what their author intended (docs/src/reference/language.md, 5:
+//! W02xx to W04xx).
 //!
-//! A lint reports only code that is certainly useless, and never code that may be intended.
+//! A lint reports only code that is certainly useless, never code that may be intended.
 
 mod ends;
 mod frames;
@@ -19,8 +19,8 @@ pub use numbers::bare_numbers;
 use super::Nondegenerate;
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// Warns about suspicious parts of a plan without degeneracy. Each place is reported once, however often its plan is
-/// used.
+/// Warns about suspicious parts of a plan without degeneracy. Each part is reported only once, even if its plan is used
+/// several times.
 #[must_use]
 pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     let plan = plan.plan();

@@ -1,5 +1,5 @@
-//! Warns about numbers without a unit that were probably meant in another unit, such as a speed of `0.5`, which means
-//! 0.5 cm/s (W0401).
+//! Warns about numbers without a unit that the author probably meant in another unit. For example, a speed of `0.5`
+//! means 0.5 cm/s (W0401).
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::syntax::tree::{
     self, Arg, Call, Compared, Condition, ConditionNode, Element, Frame, Number, Operand, Primary,
 };
 
-/// Warns about numbers with a doubtful unit in all plans of files that resolve without errors.
+/// Warns about numbers that are doubtful in their unit. The plans of the files must resolve without errors.
 #[must_use]
 pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
     let with_parameters = files.plans.iter().filter(|plan| !plan.params.is_empty());
@@ -23,11 +23,11 @@ pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
     numbers.found
 }
 
-/// Range, in metres, that exceeds the range of every sonar.
+/// A range, in metres, that is beyond the range of every sonar.
 const SONAR: f64 = 20.0;
-/// Length, in metres, that hardly any plan drives.
+/// A length, in metres, that hardly any plan drives.
 const FAR: f64 = 100.0;
-/// Length, in metres, that is unusual for a single law.
+/// A length, in metres, that is unusual for a single law.
 const UNUSUAL: f64 = 50.0;
 
 struct Numbers<'a> {
@@ -123,7 +123,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Checks the arguments of a plan.
+    /// Checks the arguments that are passed to a plan.
     fn given(&mut self, call: &Call, plan: &tree::Plan) {
         let parameters = Parameters::declared(plan, self.alphabet, &mut Vec::new());
         for (arg, param) in call.args.iter().zip(plan.params) {
@@ -166,7 +166,7 @@ impl Numbers<'_> {
     }
 }
 
-/// Warns about a heading that `theta` never has: its values are between -180 and 180 degrees.
+/// Warns about a heading that `theta` never has, because the values of `theta` are between -180 and 180 degrees.
 fn beyond_half_a_turn(number: &Number, value: f64) -> Option<Diagnostic> {
     let (half, unit) = match number.unit() {
         None | Some("deg") => (180.0, "deg"),
@@ -186,8 +186,8 @@ fn beyond_half_a_turn(number: &Number, value: f64) -> Option<Diagnostic> {
     Some(found.fix("the same heading is {}", number.span, format!("{same}deg")))
 }
 
-/// Returns the unit that was probably meant, and the reason why a value of this kind is doubtful in `unit`; `None` if
-/// the value is plausible.
+/// Returns the unit that the author probably meant, and the reason why a value of this kind is doubtful in `unit`;
+/// `None` if the value is plausible.
 fn doubt(kind: ParameterKind, unit: &str, value: f64) -> Option<(&'static str, &'static str)> {
     let size = value.abs();
     let is = |name: &str| Unit::from_name(name).is_some_and(|found| found.kind == kind) && unit == name;
@@ -207,8 +207,8 @@ fn doubt(kind: ParameterKind, unit: &str, value: f64) -> Option<(&'static str, &
     })
 }
 
-/// Returns `true` for a number of 1000 or more that was probably meant in milliseconds. Times in seconds are
-/// usually whole minutes, as 1800 is.
+/// Returns `true` for a number of 1000 or more that is probably meant in milliseconds. A time in seconds of this size
+/// is usually a whole number of minutes, such as 1800.
 fn is_like_milliseconds(size: f64) -> bool {
     size >= 1000.0 && (size % 60.0 != 0.0 || size % 1000.0 == 0.0)
 }

@@ -1,4 +1,5 @@
-//! Warns about loops that can be skipped in one turn, because no pass takes time while some conditions hold (W0301).
+//! Warns about loops that can be skipped within one turn, because no pass takes time while certain conditions hold
+//! (W0301).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,10 +7,10 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::families::{Family, Readings, at_once, family};
 use crate::plan::{Condition, Interrupt, Loop, Node, Plan, Quark, QuarkId, RecordId, Scope, Situation};
 
-/// Maximum number of quarks of a loop for which all combinations are tried; loops with more quarks are not
+/// Maximum number of quarks in a loop for which all combinations of values are tried. Loops with more quarks are not
 /// checked.
 const QUARKS: usize = 8;
-/// Maximum number of elements of a loop that is checked.
+/// Maximum number of elements in a loop that is checked.
 const ELEMENTS: usize = 64;
 
 /// Warns about loops that can be skipped.
@@ -20,14 +21,14 @@ pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
 
 struct Skipped<'p, 'f> {
     plan: &'p Plan,
-    /// Values that quarks have as long as no enclosing scope has ended.
+    /// Values of quarks that are certain because no enclosing scope has ended.
     known: BTreeMap<QuarkId, bool>,
     found: &'f mut Vec<Diagnostic>,
 }
 
 impl Skipped<'_, '_> {
-    /// Checks the body of a scope, given that no operand of the scope's interrupt has fired. Returns `true` if the body
-    /// contains a reported loop.
+    /// Checks the body of a scope, assuming that no operand of the scope's interrupt has fired. Returns `true` if the
+    /// body contains a reported loop.
     fn inside(&mut self, scope: &Scope) -> bool {
         let known = self.known.clone();
         for operand in scope.interrupt.condition.operands() {
@@ -47,7 +48,8 @@ impl Skipped<'_, '_> {
         is_reported
     }
 
-    /// Returns `true` if the sequence contains a reported loop; an enclosing loop can be skipped for the same reason.
+    /// Checks a sequence. Returns `true` if it contains a reported loop, because an enclosing loop can be skipped for
+    /// the same reason and need not be reported.
     fn sequence(&mut self, body: &[Node]) -> bool {
         body.iter().fold(false, |is_reported, node| {
             is_reported
@@ -139,7 +141,7 @@ impl Skipped<'_, '_> {
     }
 }
 
-/// Situation of a scope that has just been entered; the function returns the value of each quark.
+/// Situation of a scope that has just been entered. The function returns the value of each quark.
 struct AtOnce<F>(F);
 
 impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {
@@ -183,7 +185,7 @@ fn all(body: &[Node], left: &mut usize) -> Option<Condition> {
     Some(Condition::And(conditions))
 }
 
-/// Returns the condition of the interrupt, if it can be true when its scope is entered.
+/// Returns the condition of the interrupt if it can be true when its scope is entered; `None` otherwise.
 fn own(interrupt: &Interrupt) -> Option<Condition> {
     let condition = &interrupt.condition;
     let never = matches!(

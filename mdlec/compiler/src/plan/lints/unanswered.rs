@@ -1,4 +1,4 @@
-//! Warns about an atom that waits for another robot without a time limit, because it waits forever if that robot is off
+//! Warns about an atom that waits for another robot without a time limit. If that robot is off, the atom never ends
 //! (W0209).
 
 use crate::diagnostic::{Code, Diagnostic};
@@ -34,8 +34,8 @@ impl<'p> Unanswered<'p, '_> {
         }
     }
 
-    /// Returns the first quark by which a condition waits for another robot; `None` if the condition waits for no
-    /// robot. A quark under NOT does not count, since it ends without that robot.
+    /// Returns the first quark by which a condition waits for another robot; `None` if there is no such quark. A quark
+    /// under NOT is ignored, because it ends the atom even without that robot.
     fn waits(&self, condition: &Condition) -> Option<String> {
         match condition {
             Condition::Quark(id) => {

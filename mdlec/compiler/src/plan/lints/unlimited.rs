@@ -1,5 +1,5 @@
-//! Warns about a `goAvoid` to a point that ends only on arrival or contact, because it never ends if no path leads to
-//! the point (W0208).
+//! Warns about a `goAvoid` to a point if it ends only on arrival or contact. It never ends if no path leads to the
+//! point (W0208).
 
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
@@ -38,8 +38,8 @@ impl<'p> Unlimited<'p, '_> {
         }
     }
 
-    /// Returns `true` if an interrupt may end a drive whose goal cannot be reached. Contact does not count, since the
-    /// law avoids obstacles.
+    /// Returns `true` if an interrupt may end a drive whose goal cannot be reached. Contact is ignored, because the law
+    /// avoids obstacles.
     fn limits(&self, interrupt: &Interrupt) -> bool {
         interrupt.condition.operands().iter().any(|operand| match operand {
             Condition::Null => false,

@@ -1,4 +1,5 @@
-//! Reports common mistakes that the parser accepts, and unknown plan names, with the element that was probably meant.
+//! Reports unknown plan names, and common mistakes that the parser accepts; proposes the element that the user probably
+//! meant.
 
 use super::Resolver;
 use crate::alphabet::{self, DeclarationKind, ParameterKind, Unit};
@@ -8,7 +9,8 @@ use crate::syntax::tree::{self, Call, ConditionNode, Element, Frame, Primary};
 use crate::syntax::{foreign, nearest_unit};
 
 impl<'a> Resolver<'_, 'a> {
-    /// Reports `{ My Plan (bumper) …`, a name of two words; returns the number of elements that belong to the mistake.
+    /// Reports a name of two words, as in `{ My Plan (bumper) …`. Returns the number of elements that belong to the
+    /// mistake.
     pub(super) fn words_of_name(&mut self, plan: &tree::Plan<'a>) -> usize {
         let [Element { primary: Primary::Ref(word), .. }, Element { primary: Primary::String(group), .. }, ..] =
             plan.elements
@@ -30,8 +32,8 @@ impl<'a> Resolver<'_, 'a> {
         2
     }
 
-    /// Reports `{ Group robot1 robot2 Round (bumper) …`, robots without brackets; returns the number of elements that
-    /// belong to the mistake.
+    /// Reports robots without brackets, as in `{ Group robot1 robot2 Round (bumper) …`. Returns the number of elements
+    /// that belong to the mistake.
     pub(super) fn robots_without_brackets(&mut self, plan: &tree::Plan<'a>) -> usize {
         if plan.name.node != "Group" || plan.condition.is_some() {
             return 0;
@@ -51,8 +53,8 @@ impl<'a> Resolver<'_, 'a> {
         plan.elements.len()
     }
 
-    /// Reports `{ Plan bumper (Atom …`, a condition without parentheses; returns the number of elements that belong to
-    /// the mistake.
+    /// Reports a condition without parentheses, as in `{ Plan bumper (Atom …`. Returns the number of elements that
+    /// belong to the mistake.
     pub(super) fn bare_condition(&mut self, plan: &tree::Plan<'a>) -> usize {
         let [Element { primary: Primary::Ref(call), marks: None, .. }, _, ..] = plan.elements else { return 0 };
         let mut declarations = self.quarks.alphabet().declarations_of(call.name);
@@ -72,7 +74,7 @@ impl<'a> Resolver<'_, 'a> {
         1
     }
 
-    /// Reports `FRAME 90 deg (Atom …)`, where the unit is read as a plan by name.
+    /// Reports a unit after a space, as in `FRAME 90 deg (Atom …)`, where it is read as a plan used by name.
     pub(super) fn unit_apart(&self, element: &Element<'a>) -> Option<Diagnostic> {
         let (Some(Frame::Turned(number)), Primary::Ref(call)) = (element.frame(), &element.primary) else {
             return None;
@@ -148,7 +150,7 @@ impl<'a> Resolver<'_, 'a> {
     }
 }
 
-/// Returns `true` if a name joins steps in other languages, such as `then`.
+/// Returns `true` if a name is a word that joins steps in other languages, such as `then`.
 fn is_joining(name: &str) -> bool {
     ["then", "and", "next", "followed", "do", "begin", "end"].iter().any(|word| name.eq_ignore_ascii_case(word))
 }

@@ -6,7 +6,7 @@ use crate::syntax::token::{Tok, Token};
 use crate::syntax::tree::Name;
 
 impl<'s> Pass<'_, 's> {
-    /// Reports a label between an atom's parenthesis and the next token, `Atom`, and assigns the parenthesis to the
+    /// Reports a label between an atom's opening parenthesis and the token `Atom`, and assigns the parenthesis to the
     /// atom. Returns `true` if there is such a label.
     pub(super) fn label_inside(&mut self) -> bool {
         let [.., Token { kind: Tok::LParen | Tok::TouchParen, .. }, Token { kind: Tok::Name(label), place }, colon] =
@@ -27,7 +27,8 @@ impl<'s> Pass<'_, 's> {
         true
     }
 
-    /// Reports a `use` inside a plan, from which the grammar could not recover; the named file counts as used.
+    /// Reports a `use` inside a plan, from which the grammar could not recover. The file that it names is treated as
+    /// used.
     pub(super) fn inner_use(&mut self, index: usize, token: Token<'s>) {
         let span = self.source.span(token.place);
         let diagnostic = Diagnostic::new(

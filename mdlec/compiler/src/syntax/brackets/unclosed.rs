@@ -6,7 +6,7 @@ use crate::syntax::source::TextRange;
 use crate::syntax::token::{Tok, Token};
 
 impl Pass<'_, '_> {
-    /// Closes all brackets that are open at the end of the text.
+    /// Closes all brackets that are still open at the end of the text.
     pub(super) fn end(&mut self) {
         let stopped = self.balanced.diagnostics.iter().any(|diagnostic| diagnostic.code == Code::E0106);
         let end = self.balanced.tokens.last().map_or(TextRange::new(0, 0), |token| token.place);
@@ -65,7 +65,7 @@ impl Pass<'_, '_> {
         }
     }
 
-    /// Closes all open brackets but the first `depth` before a token that seems to follow them.
+    /// Closes all open brackets except the first `depth`. They are closed before a token that seems to come after them.
     pub(super) fn close_down_to(&mut self, depth: usize, at: TextRange) {
         while let Some(open) = self.open.last().copied().filter(|_| self.open.len() > depth) {
             if open.kind == BracketKind::Brace {

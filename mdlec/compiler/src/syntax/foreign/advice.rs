@@ -63,12 +63,12 @@ pub(super) fn is_word(name: &str) -> bool {
     )
 }
 
-/// Returns the form of MDLe that replaces a word of another language.
+/// Returns the form of MDLe that replaces a word of another language; `None` if there is no such form.
 pub(crate) fn advice(word: &str) -> Option<String> {
     advice_for(word, "r0 < 1m")
 }
 
-/// Returns the form of MDLe that replaces a word with the condition that follows it.
+/// Returns the form of MDLe that replaces a word and the condition that follows it.
 pub(super) fn advice_for(word: &str, condition: &str) -> Option<String> {
     let is_joined = condition.contains(" OR ") || condition.contains(" AND ");
     let opposite = match condition.strip_prefix("NOT ") {

@@ -55,7 +55,7 @@ impl Rewriting<'_, '_> {
         Some(if count.is_some() { next } else { self.past_condition(next) })
     }
 
-    /// Processes loops such as `for i in 1..3 …`, `for i in range(3): …` and `for i = 1:3 …`, up to their bodies.
+    /// Processes loops such as `for i in 1..3 …`, `for i in range(3): …` and `for i = 1:3 …`, except their bodies.
     fn after_loop_variable(&mut self, at: usize, name: &str) -> Option<usize> {
         let variable = self.kind(at + 1).filter(|kind| matches!(kind, Tok::Name(_)) && !is_like_loop(name))?;
         if !matches!(self.kind(at + 2), Some(Tok::Name("in" | "from" | "of") | Tok::Assign)) {

@@ -1,11 +1,11 @@
-//! Places comments: a comment at the end of a line stays there, and a comment on a line of its own keeps its line.
+//! Positions comments. A comment at the end of a line stays there, and a comment on its own line stays on its own line.
 
 use super::{INDENT, Layout};
 
-/// A comment, with the number of line ends before it.
+/// A comment, and the number of line ends before it.
 #[derive(Debug)]
 pub(super) struct Comment<'s> {
-    /// Whole text of the comment, with its slashes.
+    /// Whole text of the comment, including its slashes.
     text: &'s str,
     /// Number of line ends between the previous token or comment and this comment.
     lines: usize,
@@ -17,7 +17,7 @@ impl Comment<'_> {
         self.text.starts_with("//")
     }
 
-    /// Returns the comment without spaces at the ends of its lines.
+    /// Returns the comment without trailing spaces on its lines.
     fn trimmed(&self) -> String {
         self.text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
     }
@@ -26,7 +26,7 @@ impl Comment<'_> {
 /// Comments and line ends between two tokens.
 #[derive(Debug, Default)]
 pub(super) struct Gap<'s> {
-    /// Comments in their order.
+    /// Comments in the order of the text.
     pub(super) comments: Vec<Comment<'s>>,
     /// Number of line ends after the last comment.
     lines: usize,
@@ -55,16 +55,16 @@ fn line_ends(blank: &str) -> usize {
     blank.matches('\n').count()
 }
 
-/// Position of a piece that begins a line, which determines if an empty line precedes it.
+/// Position of a piece that begins a line. It determines whether an empty line precedes the piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Before {
-    /// The first of several pieces: no empty line precedes it.
+    /// The first of several pieces. No empty line precedes it.
     First,
-    /// Another piece: an empty line before it is kept.
+    /// A later piece. An empty line before it is kept.
     Next,
-    /// A plan after other plans: an empty line precedes it.
+    /// A plan after other plans. An empty line precedes it.
     Apart,
-    /// A closing bracket or the end: no empty line precedes it.
+    /// A closing bracket, or the end of the text. No empty line precedes it.
     Close,
 }
 

@@ -1,7 +1,7 @@
 //! Collects formatted lines, each with its trailing comment. Trailing comments of neighbouring lines with the same
 //! indentation are aligned.
 
-/// Number of columns between the longest of several neighbouring lines and their comments.
+/// Number of columns between neighbouring lines and their comments, counted from the longest of these lines.
 const GAP: usize = 4;
 
 /// A formatted line.
@@ -10,7 +10,7 @@ struct FormattedLine {
     code: String,
     /// Trailing comment; empty if there is none.
     comment: String,
-    /// `true` if no text can follow on this line, because it ends with a comment.
+    /// `true` if no text can follow on this line because it ends with a comment.
     is_closed: bool,
 }
 
@@ -44,7 +44,7 @@ impl FormattedLines {
         code.push_str(text);
     }
 
-    /// Appends a comment between words, or on a line of its own.
+    /// Appends a comment, either between words or on its own line.
     pub(super) fn append(&mut self, comment: &str, is_closed: bool) {
         if self.line.as_ref().is_some_and(|line| !line.comment.is_empty()) {
             return self.trail(comment);
@@ -53,7 +53,7 @@ impl FormattedLines {
         self.line.get_or_insert_default().is_closed = is_closed;
     }
 
-    /// Ends the line with a comment.
+    /// Ends the line with a trailing comment.
     pub(super) fn trail(&mut self, comment: &str) {
         let line = self.line.get_or_insert_default();
         if !line.comment.is_empty() {

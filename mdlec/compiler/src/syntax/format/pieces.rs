@@ -1,4 +1,4 @@
-//! The tokens of a text in their printed form, each with the comments before it.
+//! The tokens of a text in their printed form, each with the comments that precede it.
 
 use std::borrow::Cow;
 
@@ -22,17 +22,17 @@ pub(super) struct Piece<'s> {
     start: usize,
     /// Comments and line ends before the piece.
     gap: Gap<'s>,
-    /// `true` if a line that would be too long may break before the piece.
+    /// `true` if a line that would be too long may be broken before the piece.
     may_break: bool,
-    /// Number of columns that all pieces before this one need on one line.
+    /// Number of columns that all previous pieces would need on one line.
     left: usize,
-    /// Number of comments before the piece in the whole text.
+    /// Number of comments in the whole text before the piece.
     comments: usize,
 }
 
 /// Pieces that must stay on one line.
 pub(super) struct Chunk {
-    /// `true` if a line may break before the chunk.
+    /// `true` if a line may be broken before the chunk.
     pub(super) may_break: bool,
     /// Number of columns that the chunk needs.
     pub(super) width: usize,
@@ -95,18 +95,18 @@ impl<'s> Pieces<'s> {
         }
     }
 
-    /// Returns the number of columns that the pieces from `first` to before `end` need on one line.
+    /// Returns the number of columns that the pieces `first..end` need on one line.
     pub(super) fn width(&self, first: usize, end: usize) -> usize {
         let last = self.get(end.saturating_sub(1));
         last.left + last.text.chars().count() - self.get(first).left
     }
 
-    /// Returns `true` if a comment precedes a piece in the range from `first` to before `end`.
+    /// Returns `true` if a comment precedes any of the pieces `first..end`.
     pub(super) fn have_comments(&self, first: usize, end: usize) -> bool {
         self.get(end.saturating_sub(1)).comments > self.get(first.saturating_sub(1)).comments
     }
 
-    /// Returns the pieces from `first` to the next place at which the line may break, at most to `end`.
+    /// Returns the pieces from `first` to the next place at which the line may be broken, but at most up to `end`.
     pub(super) fn chunk(&self, first: usize, end: usize) -> Chunk {
         if !self.get(first).may_break {
             return Chunk { may_break: false, width: 0 };
@@ -119,7 +119,7 @@ impl<'s> Pieces<'s> {
     }
 }
 
-/// Returns the printed form of a token: words and numbers as written, but without typesetting.
+/// Returns the printed form of a token. Words and numbers are printed as written, but without typesetting.
 fn text<'s>(source: FileText<'s>, token: Token<'s>) -> Cow<'s, str> {
     let written = source.slice(token.place);
     #[allow(clippy::wildcard_enum_match_arm, reason = "all others are written as they are")]
@@ -139,7 +139,7 @@ fn text<'s>(source: FileText<'s>, token: Token<'s>) -> Cow<'s, str> {
     })
 }
 
-/// Returns a label without typesetting, if the result is still a label.
+/// Returns a label without typesetting; if the result would not be a label, returns the label as written.
 fn plain_label(written: &str) -> Cow<'_, str> {
     let plain = label(written);
     let is_label = |text: &str| {

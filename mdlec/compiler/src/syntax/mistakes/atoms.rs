@@ -1,10 +1,10 @@
-//! Reports mistakes in atoms: a condition or a law that is missing or misplaced.
+//! Reports mistakes in atoms, where a condition or a law is missing or in the wrong place.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
-/// Reports the condition of an atom without parentheses, as in `(Atom bumper stop)`.
+/// Reports an atom whose condition is not in parentheses, as in `(Atom bumper stop)`.
 pub(super) fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.before(1) != Some(Tok::Atom) {
         return None;
@@ -47,21 +47,22 @@ pub(super) fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("write {} and a law", span, format!("Atom ({call})")))
 }
 
-/// Laws that complete by themselves, and laws that never do.
+/// Two lists: laws that complete by themselves, and laws that never complete.
 const LAWS: [&[&str]; 2] = [&["advance", "align", "Follow", "goAvoid", "path", "rotate", "turn"], &["go", "stop"]];
 
-/// Returns `true` if a name is the name of a law in the paper or in `mdle-atoms`; the parser has no alphabet.
+/// Returns `true` if a name is the name of a law in the paper or in `mdle-atoms`. The alphabet is not used, because the
+/// parser has none.
 fn is_law(name: &str) -> bool {
     LAWS.iter().any(|laws| laws.contains(&name))
 }
 
-/// Returns an example of a condition for an atom with this call as its law.
+/// Returns an example of a condition for an atom whose law is this call.
 fn condition_for(call: &str) -> &'static str {
     let name = call.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or("");
     if LAWS[0].contains(&name) { "null" } else { "wait 10" }
 }
 
-/// Returns the index of an atom's only parentheses, and the call in them, if the call is a law.
+/// Returns the index of the only parentheses in an atom, and the call in them; `None` if the call is not a law.
 fn law_in_group<'s>(site: &Site<'_, 's>, group: usize) -> Option<(usize, &'s str)> {
     let end = site.at.checked_sub(1).filter(|end| *end > group + 1 && site.end_of_group(group) == *end)?;
     let is_only = site.kind(group) == Some(Tok::LParen) && site.name_at(group + 1).is_some_and(is_law);
@@ -81,7 +82,7 @@ fn law_outside(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("move this `)` after the law: {}", site.span(site.at, last), format!(" {law})")))
 }
 
-/// Returns the index of the last token of a name and the numbers that follow it.
+/// Returns the index of the last token of a call: a name and the numbers that follow it.
 pub(super) fn end_of_call(site: &Site<'_, '_>, name: usize) -> usize {
     if site.kind(name + 1) == Some(Tok::TouchParen) {
         return site.end_of_group(name + 1);
@@ -157,7 +158,7 @@ pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Returns the text of an atom for a second law, such as `(turn 90)`, that follows the law of an atom.
+/// Returns the text of a new atom for a second law, such as `(turn 90)`, that follows the law of an atom.
 fn second_law(site: &Site<'_, '_>) -> Option<String> {
     let (first, last) = (site.at + 1, site.end_of_group(site.at).checked_sub(1)?);
     let is_law = site.found() == Some(Tok::LParen) && site.name_at(first).is_some_and(is_law);

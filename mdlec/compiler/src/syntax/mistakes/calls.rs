@@ -1,4 +1,4 @@
-//! Reports mistakes with calls: laws, interrupts and plans that are unexpected or malformed.
+//! Reports calls of laws, interrupts and plans that are unexpected or malformed.
 
 use super::atoms::end_of_call;
 use super::spelling;
@@ -35,7 +35,7 @@ pub(super) fn square_brackets(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Returns `true` if the words up to this token are `{ group` or `{ Group Name`, after which robots may follow.
+/// Returns `true` if the tokens before `before` are `{ group` or `{ Group Name`, after which robots may follow.
 fn names_group(site: &Site<'_, '_>, before: usize) -> bool {
     let begins = |word: usize| {
         let is_named = site.name_at(word).is_some_and(|name| name.eq_ignore_ascii_case("group"));
@@ -63,7 +63,7 @@ pub(super) fn decimal_comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("a decimal number has a dot: {}", site.span(whole, comma + 1), format!("{left}.{right}")))
 }
 
-/// Reports arguments that do not touch the name of their plan, as in `Leg (3m)`.
+/// Reports arguments that are separated from the name of their plan, as in `Leg (3m)`.
 pub(super) fn apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let paren = site.at.checked_sub(1)?;
     let name = paren.checked_sub(1)?;
@@ -88,7 +88,7 @@ pub(super) fn apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix(&words, site.span(name, paren), format!("{plan}(")))
 }
 
-/// Reports a unit that does not touch its number, as in `0.5 m`.
+/// Reports a unit that is separated from its number, as in `0.5 m`.
 pub(super) fn unit_apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (Some(Tok::Name(name)), Some(Tok::Number(number))) = (site.found(), site.before(1)) else { return None };
     if !split(number).1.is_empty() {
@@ -100,7 +100,7 @@ pub(super) fn unit_apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("write {}", site.span(site.at - 1, site.at), format!("{number}{name}")))
 }
 
-/// Reports a quark in the place of an element, as in `{ A go 5 0 }`, `((wait 5) stop)` or `(r0 < 1m)`.
+/// Reports a quark where an element is expected, as in `{ A go 5 0 }`, `((wait 5) stop)` or `(r0 < 1m)`.
 pub(super) fn bare_call(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let formal = site.expects(",") && site.expects_argument() && site.opener_kind() == Some(Tok::LParen);
     if formal {
@@ -132,7 +132,7 @@ pub(super) fn bare_call(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("or, if it is a plan, write {}", site.span(site.at - 1, last), call))
 }
 
-/// Reports a quark or a comparison in parentheses.
+/// Reports a quark or a comparison in parentheses where an element is expected.
 fn in_parentheses(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let opener = site.opener()?;
     let end = site.end_of_group(opener);
@@ -198,12 +198,12 @@ fn is_comparison(token: Option<Tok<'_>>) -> bool {
     matches!(token, Some(Tok::Equal | Tok::Less | Tok::LessOrEqual | Tok::Greater | Tok::GreaterOrEqual))
 }
 
-/// Reports a parenthesis that touches a name but does not contain its arguments.
+/// Reports a parenthesis that touches a name although it does not contain arguments of the name.
 pub(super) fn touching_parenthesis(site: &Site<'_, '_>) -> Option<Diagnostic> {
     (site.found() == Some(Tok::TouchParen)).then(|| touches(site, site.at))
 }
 
-/// Reports an element in parentheses that touch a name.
+/// Reports an element in parentheses that touch the name before them.
 pub(super) fn element_touches(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let element = matches!(site.found(), Some(Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::Frame));
     let opener = site.opener().filter(|_| element && site.opener_kind() == Some(Tok::TouchParen))?;

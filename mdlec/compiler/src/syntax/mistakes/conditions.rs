@@ -4,7 +4,7 @@ use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
-/// Reports text that is not a condition in the place of a condition.
+/// Reports text that is not a condition, where a condition is expected.
 pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if !site.expects_condition() {
         return not_joined(site);

@@ -1,4 +1,5 @@
-//! Reports mistakes between plans: elements outside of a plan, names before their plans, and mistakes with `use`.
+//! Reports mistakes between plans: elements outside of plans, names before the brace of their plan, and mistakes in
+//! `use`.
 
 use super::plan_names::{name_before_plan, not_a_label};
 use crate::diagnostic::Diagnostic;
@@ -6,7 +7,7 @@ use crate::syntax::foreign;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
-/// Reports an element, a name or a file without quotes between plans.
+/// Reports an element, a name or a file name without quotes that is outside of all plans.
 pub(super) fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.before(1) == Some(Tok::Use) {
         let diagnostic = site.about(
@@ -88,8 +89,8 @@ pub(super) fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// Reports more than one file or another name for the file after `use`, as in `use "a.mdle" "b.mdle"` and `use "a.mdle"
-/// as a`.
+/// Reports more than one file after `use`, as in `use "a.mdle" "b.mdle"`, or another name for the file, as in `use
+/// "a.mdle" as a`.
 fn after_used_file(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let first = if site.found() == Some(Tok::Comma) { site.at + 1 } else { site.at };
     if let Some(Tok::Str(_)) = site.kind(first) {

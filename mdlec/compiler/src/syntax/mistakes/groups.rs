@@ -6,7 +6,8 @@ use crate::syntax::token::Tok;
 
 pub(super) const HEAD: &str = "a group begins with its robots and its name: `{ Group [robot1 robot2] Name … }`";
 
-/// Reports `{ Group [robot1 robot2 Name …` and `{ Group [robot1 robot2] (…`.
+/// Reports a group whose list of robots is not closed, as in `{ Group [robot1 robot2 Name …`, or a group without a
+/// name, as in `{ Group [robot1 robot2] (…`.
 pub(super) fn head_of_group(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let is_mark = |at: &usize| matches!(site.kind(*at), Some(Tok::Group | Tok::LBracket | Tok::RBracket | Tok::RBrace));
     let mark = (0..site.at).rev().find(is_mark)?;

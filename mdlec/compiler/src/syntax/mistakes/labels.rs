@@ -1,4 +1,4 @@
-//! Mistakes with labels, colons and equals signs.
+//! Reports mistakes with labels, colons and equals signs.
 
 use super::plan_names::{name_before_plan, not_a_label};
 use crate::alphabet::ParameterKind;
@@ -124,7 +124,7 @@ pub(super) fn label_behind(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// Reports a label of `after` in parentheses or quotes, as in `after (ahead)` and `after "ahead"`.
+/// Reports parentheses or quotes around the label of an `after`, as in `after (ahead)` and `after "ahead"`.
 pub(super) fn label_of_after(site: &Site<'_, '_>) -> Option<Diagnostic> {
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens hold no name")]
     let (label, last) = match site.found()? {

@@ -1,4 +1,4 @@
-//! Mistakes in the list of a plan's parameters.
+//! Reports mistakes in the list of a plan's parameters.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;

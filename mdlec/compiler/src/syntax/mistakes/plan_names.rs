@@ -1,9 +1,9 @@
-//! Mistakes with names before the brace of a plan.
+//! Reports mistakes with names before the brace of a plan.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 
-/// Reports a name before the brace of its plan, at the beginning of the file or after a label.
+/// Reports a name before the brace of its plan, either at the beginning of the file or after a label.
 pub(super) fn name_before_plan(site: &Site<'_, '_>, at: usize) -> Diagnostic {
     let name = site.name_at(at).unwrap_or("Name");
     let words = format!("the name of a plan is the first thing inside: `{{ {name} … }}`");
@@ -14,7 +14,7 @@ pub(super) fn name_before_plan(site: &Site<'_, '_>, at: usize) -> Diagnostic {
     )
 }
 
-/// Reports a name with `=` that is not a label.
+/// Reports a name that is followed by `=` but is not a label.
 pub(super) fn not_a_label(site: &Site<'_, '_>, at: usize, name: &str) -> Diagnostic {
     site.about(at, format!("`{name}` is not a label"), "the label of a plan begins with `Γ_` or `Gamma_`")
         .fix("write {}", site.span(at, at), format!("Gamma_{name}"))

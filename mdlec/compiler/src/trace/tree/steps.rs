@@ -1,4 +1,4 @@
-//! Makes the walk available in single steps, with the state of its open elements, for a debugger.
+//! Makes single steps of the walk, and the state of its open elements, available to a debugger.
 
 use mdle_runtime::{Nanometers, Nanos, TRANSITIONS_PER_TURN};
 
@@ -13,16 +13,16 @@ pub enum TreeStep<'p> {
     Transition {
         /// The transition, as a trace shows it.
         fired: Fired<'p>,
-        /// Number of open elements that enclose the scope that has ended.
+        /// Number of open elements that enclosed the scope that has ended.
         ended: usize,
-        /// Number of open elements that have stayed open; this step entered all later ones.
+        /// Number of open elements that have stayed open. This step entered all elements after them.
         kept: usize,
     },
-    /// The turn is over, with this input applied.
+    /// The turn is over; contains the input that was applied.
     End(ScriptedInput<'p>),
 }
 
-/// A scope, a loop or an atom that is open in a walk.
+/// A scope, loop or atom of the tree that has been entered and has not ended yet.
 #[derive(Debug, Clone, Copy)]
 pub struct OpenPart<'t, 'p> {
     tree: &'t TreeWalk<'p>,
@@ -30,7 +30,7 @@ pub struct OpenPart<'t, 'p> {
 }
 
 impl<'p> TreeWalk<'p> {
-    /// Enters the plan at the reports of the first turn, unless this was done before.
+    /// Enters the plan in the first turn, which has these reports. Has no effect if the plan has already been entered.
     pub fn begin(&mut self, reports: &Reports) {
         if !std::mem::replace(&mut self.has_begun, true) {
             self.enter(0, 1, reports.moment());
@@ -55,14 +55,14 @@ impl<'p> TreeWalk<'p> {
         }
     }
 
-    /// Returns the open elements, the plan first and the current atom last; no element before the first turn
-    /// and after the end of the plan.
+    /// Returns the open elements, from the plan to the current atom; empty before the first turn and after the plan has
+    /// ended.
     pub fn open(&self) -> impl DoubleEndedIterator<Item = OpenPart<'_, 'p>> + ExactSizeIterator {
         self.open.iter().map(|open| OpenPart { tree: self, open })
     }
 
-    /// Returns the spans of the true operands of the interrupt that ends a scope in the next step; an empty list if the
-    /// step ends no scope, or if the law has completed.
+    /// Returns the spans of the operands that are true in the interrupt that ends a scope in the next step. The list is
+    /// empty if the step ends no scope, or if the law has completed.
     #[must_use]
     pub fn firing(&self, reports: &Reports) -> Vec<Span> {
         let fired = |part: &OpenPart<'_, 'p>| {
@@ -76,7 +76,7 @@ impl<'p> TreeWalk<'p> {
 }
 
 impl<'t, 'p> OpenPart<'t, 'p> {
-    /// Returns the part of the plan that is open.
+    /// Returns the open element as a part of the plan.
     #[must_use]
     pub fn part(self) -> PlanPart<'p> {
         match self.tree.elements[self.open.element].kind {
@@ -98,25 +98,25 @@ impl<'t, 'p> OpenPart<'t, 'p> {
         self.open.entered.way_since(reports)
     }
 
-    /// Returns the number of a loop's current pass, from 1.
+    /// Returns the number of a loop's current pass, counted from 1.
     #[must_use]
     pub fn pass(self) -> u64 {
         self.open.pass
     }
 
-    /// Returns the memories of RISING in the part's interrupt: `true` once the operand was false.
+    /// Returns the memories of RISING in the part's interrupt. A memory is `true` once its operand was false.
     #[must_use]
     pub fn memories(self) -> &'t [bool] {
         &self.open.memories
     }
 
-    /// Returns, for a plan that uses `after`, a list with `true` for each fact of its record that holds.
+    /// Returns, for a plan that uses `after`, a list that contains `true` for each fact in its record that is true.
     #[must_use]
     pub fn facts(self) -> &'t [bool] {
         &self.open.facts
     }
 
-    /// Returns `true` if `condition` is true; `condition` is the condition of the part's interrupt or a part of that
+    /// Returns `true` if `condition` is true. This is the condition of the part's interrupt, or a part of that
     /// condition.
     #[must_use]
     pub fn holds(self, condition: &Condition, reports: &Reports) -> bool {

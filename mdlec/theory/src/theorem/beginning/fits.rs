@@ -5,8 +5,8 @@ use super::{Beginning, Boundary};
 use crate::theorem::{Broken, InterruptId, State, Stretch};
 
 impl Beginning<'_> {
-    /// Checks that each ending scope leads to a position at which a loop can begin, and that it does not lead past the
-    /// start of a loop that ends at the same boundary (R4).
+    /// Checks that each ending scope leads to a position at which a loop can begin, and that it does not lead to a
+    /// position before the start of a loop that ends at the same boundary (R4).
     pub(super) fn loops_fit(&self, ending: &Boundary, next: State) -> Result<(), Broken> {
         let here = self.order.len() - 1;
         let stretch = |first: usize, last: usize| Stretch { first: self.order[first], last: self.order[last] };

@@ -1,4 +1,5 @@
-//! The turns of an engine that drives a robot: plan, modules, turn break, and effects of safety rules.
+//! The turns of an engine that drives a robot: the turn of the plan, the turns of modules, the turn break, and the
+//! effects of safety rules.
 
 use std::time::Instant;
 
@@ -138,7 +139,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
 }
 
 impl<A: EngineAlphabet> Engine<A> {
-    /// Collects the result of the plan's turn. Rolls back a plan on trial that panicked.
+    /// Collects the result of the plan's turn. If a plan on trial panicked, rolls it back.
     fn land(&mut self, t: Nanos, is_new: bool, transitions: &mut Transitions) -> Result<Turn<A::Input>, PilotFault> {
         if self.repeats.as_ref().is_some_and(|repeats| !repeats.lands()) {
             return Ok(Turn::Cut);
@@ -174,10 +175,10 @@ impl<A: EngineAlphabet> Engine<A> {
         Ok(())
     }
 
-    /// Reports faults of modules to the operator. A plan on trial that was given up because it hangs is rolled back.
+    /// Reports faults of modules to the operator. Rolls back a plan on trial that was given up because it hangs.
     ///
     /// # Errors
-    /// Fails if a plan was given up that is not on trial.
+    /// Fails if the plan was given up and is not on trial.
     fn turn_break(&mut self) -> Result<(), PilotFault> {
         let mut is_given_up = false;
         for event in self.modules.events() {

@@ -26,7 +26,7 @@ pub(super) struct Connection {
 }
 
 impl Connection {
-    /// Receives frames until the connection ends.
+    /// Receives and processes frames until the connection ends.
     pub(super) fn receive(mut self) {
         if let Err(reason) = self.frames() {
             let robot = self.source.robot().unwrap_or("a robot");

@@ -67,7 +67,7 @@ fn accept_one(listener: &TcpListener) -> Option<io::Result<(TcpStream, SocketAdd
     (!connection.as_ref().is_err_and(is_none)).then_some(connection)
 }
 
-/// Waits briefly for a new connection, or for bytes on a connection without a proved name.
+/// Waits briefly for a new connection, or for bytes on a connection whose robot has not proved its name yet.
 fn wait(listener: &TcpListener, strangers: &Strangers) {
     let mut files: Vec<_> = strangers.streams().map(|stream| PollFd::new(stream, PollFlags::IN)).collect();
     files.push(PollFd::new(listener, PollFlags::IN));

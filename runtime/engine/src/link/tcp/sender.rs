@@ -1,4 +1,4 @@
-//! The sender to one peer: connects to the peer, and sends only the newest state, but every letter.
+//! The sender to one peer: connects to the peer, and sends all letters, but only the newest state.
 
 use std::io::{self, Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
@@ -18,8 +18,8 @@ const CONNECTS: Duration = Duration::from_millis(500);
 const GREETS: Duration = Duration::from_secs(1);
 /// Minimum time between two attempts to connect.
 const AGAIN: Duration = Duration::from_millis(200);
-/// Time after which a connection is closed and opened again if the peer acknowledges or reads nothing. Without this
-/// limit, the system would retransmit lost data at longer and longer intervals, even after the line has recovered.
+/// Time after which a connection is closed and opened again if the peer neither acknowledges nor reads data. Without
+/// this limit, the system would retransmit lost data at longer and longer intervals, even after the line has recovered.
 pub(super) const WRITES: Duration = Duration::from_secs(2);
 /// Time after which a connection is considered stable.
 const LASTS: Duration = Duration::from_secs(1);
@@ -39,8 +39,8 @@ pub(super) fn begin(name: String, address: SocketAddr, endpoint: &Arc<Endpoint>)
     Ok(outbox)
 }
 
-/// Connects and sends until the run has ended. Reports only once that a peer cannot be reached, until a connection to
-/// the peer has been stable.
+/// Connects and sends until the run has ended. Reports that the peer cannot be reached, and does not repeat this report
+/// before a connection to the peer has been stable.
 fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &Endpoint) {
     let mut sender = Sender { name, outbox, endpoint, last: None, is_known_as_down: false };
     while !endpoint.is_over() {
@@ -102,8 +102,8 @@ struct Sender<'l> {
     name: &'l str,
     outbox: &'l Outbox,
     endpoint: &'l Endpoint,
-    /// The last state that was taken; `None` before the first. Every connection begins with it, because a letter is
-    /// accepted only from a robot whose state has arrived.
+    /// The state that was sent last; `None` before the first. Every connection begins with this state, because a letter
+    /// is accepted only from a robot whose state has arrived.
     last: Option<FrameDraft>,
     /// `true` once it has been reported that the peer cannot be reached.
     is_known_as_down: bool,

@@ -1,5 +1,5 @@
-//! Strangers: connections whose peers have not proved their names yet. Their number is limited, and a new connection
-//! replaces an old one, so an attacker cannot lock out peers with open connections.
+//! Strangers: connections whose peers have not proved their names yet. The number of strangers is limited, and a new
+//! one replaces an old one, so an attacker cannot lock out peers by keeping connections open.
 
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::net::{IpAddr, TcpStream};
@@ -12,7 +12,7 @@ use crate::link::state_frame::LONGEST;
 
 /// Maximum number of connections without a proved name.
 const PLACES: usize = 64;
-/// Time within which the first state has to arrive on a connection.
+/// Maximum time from opening a connection to the arrival of the first state.
 const PROVES: Duration = Duration::from_secs(1);
 
 /// Connections without a proved name, in the order in which they were opened.
@@ -51,7 +51,7 @@ enum HandshakeProgress {
 }
 
 impl Strangers {
-    /// Returns an empty list of strangers for a robot with peers at these addresses.
+    /// Creates an empty list of strangers for a robot with peers at these addresses.
     pub(super) fn new(peers: Vec<IpAddr>) -> Self {
         Self { peers: peers.iter().map(IpAddr::to_canonical).collect(), strangers: Vec::new() }
     }
@@ -98,16 +98,16 @@ impl Strangers {
     }
 }
 
-/// Returns the index of the stranger that a new connection from the address `new` replaces: the oldest one that is not
-/// from a peer's address. If all are from peers' addresses, it is the oldest one if `new` is also a peer's address, and
-/// `None` otherwise.
+/// Returns the index of the stranger that is replaced by a new connection from the address `new`. This is the oldest
+/// stranger that is not from a peer's address. If all strangers are from peers' addresses, it is the oldest stranger,
+/// but only if `new` is also a peer's address; otherwise, returns `None`.
 fn place_for(new: IpAddr, strangers: &[IpAddr], peers: &[IpAddr]) -> Option<usize> {
     let is_elsewhere = |from: &IpAddr| !peers.contains(from);
     strangers.iter().position(is_elsewhere).or_else(|| peers.contains(&new).then_some(0))
 }
 
 impl Stranger {
-    /// Sends a challenge on a new connection.
+    /// Sends a challenge on a new connection, and returns the stranger.
     ///
     /// # Errors
     /// Fails if the connection has ended, or if the system has no random numbers.

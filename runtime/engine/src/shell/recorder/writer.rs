@@ -13,7 +13,7 @@ use mdle_record::{RecordFile, Records};
 #[derive(Debug, Default)]
 pub(super) struct WriterProgress {
     pub(super) bytes: AtomicU64,
-    /// Reason why writing has failed, and the number of turns in the file; `None` if writing has not failed.
+    /// Reason why writing has failed, and the number of turns in the file; `None` while writing has not failed.
     pub(super) fault: Mutex<Option<(String, u64)>>,
 }
 
@@ -56,7 +56,7 @@ pub(super) fn write_all(
     }
 }
 
-/// Returns the number of turns that can be read in a record, which may end anywhere.
+/// Returns the number of turns that can be read from a record that may be cut off anywhere.
 fn readable_turns(path: &Path) -> u64 {
     let records = File::open(path).ok().and_then(|file| Some(Records::open(file).ok()?.1));
     records.map_or(0, |records| records.take_while(Result::is_ok).map(|_| 1).sum())

@@ -6,7 +6,7 @@
 use mdle_runtime::{Alphabet, Argument, Begin, Comparison, Completes, Control, Law, Limit, Nanos, Sensed, Twist};
 use mdle_sim::alphabet::{Alphabet as SimAlphabet, AnyControl, AnyInterrupt, AnySignal};
 
-/// The alphabet of the simulated robot, with running laws on the heap.
+/// The alphabet of the simulated robot, whose running laws are stored on the heap.
 pub(super) struct CrowdAlphabet;
 
 /// Any law of the simulated robot with its arguments.
@@ -15,7 +15,7 @@ pub(super) struct CrowdControl(AnyControl);
 /// Any running law of the simulated robot.
 pub(super) struct CrowdLaw(Box<dyn Completes<Sensed, Input = Twist> + Send>);
 
-/// A running law that has no completion, and never completes.
+/// A running law that cannot complete.
 struct Endless<L>(L);
 
 impl<L: Law<Sensed>> Law<Sensed> for Endless<L> {

@@ -11,7 +11,7 @@ use super::recorded::RecordedMember;
 
 /// A robot of a crowd.
 pub(super) struct Member {
-    /// On the heap, so that the robots of a large crowd need not be moved from list to list.
+    /// The simulated robot. It is on the heap, so that moving the members of a large crowd between lists is cheap.
     robot: Box<Simulated>,
     /// The running plan; `None` before it begins.
     machine: Option<Box<Machine<LoadedPlan<CrowdAlphabet>>>>,
@@ -20,36 +20,36 @@ pub(super) struct Member {
     pub(super) is_over: bool,
     /// `true` once the robot has touched something.
     pub(super) has_touched: bool,
-    /// Length of the path that the robot has driven, in metres.
+    /// Length of the driven path, in metres.
     pub(super) way: f64,
     record: Option<Box<RecordedMember>>,
 }
 
 impl Member {
-    /// Returns a robot whose plan has not begun.
+    /// Creates a robot whose plan has not begun.
     pub(super) fn new(robot: Simulated) -> Self {
         let (robot, input) = (Box::new(robot), Twist::default());
         Self { robot, machine: None, input, is_over: false, has_touched: false, way: 0.0, record: None }
     }
 
-    /// Returns another robot of this kind at the pose `start`; `None` if it cannot start there. `world` is the world of
-    /// this robot.
+    /// Creates another robot of the same kind at the pose `start`; `None` if it cannot start there. `world` is the
+    /// world of this robot.
     pub(super) fn another(&self, world: &World, start: Pose, seed: Option<u64>) -> Option<Self> {
         self.robot.another(world, start, seed).ok().map(Self::new)
     }
 
-    /// Returns the robot with a record, if there is one.
+    /// Adds the record to the robot; `None` means no record.
     pub(super) fn recorded(self, record: Option<RecordedMember>) -> Self {
         Self { record: record.map(Box::new), ..self }
     }
 
-    /// Returns the distances between the centres of two such robots, in metres, within which one may detect the other
-    /// with its sonars, and within which they may touch in a turn.
+    /// Returns two distances between the centres of two such robots, in metres: the distance within which one may
+    /// detect the other with its sonars, and the distance within which they may touch in a turn.
     pub(super) fn reaches(&self) -> (f64, f64) {
         (self.robot.hears(), self.robot.touches())
     }
 
-    /// Returns the message about an error of the record, if any.
+    /// Returns the message about an error of the record; `None` if there was no error.
     pub(super) fn fault(&self) -> Option<&str> {
         self.record.as_ref().and_then(|record| record.fault())
     }
@@ -62,7 +62,7 @@ impl Member {
         self.robot.pose()
     }
 
-    /// Moves the robot for the period that ends at time `t`, among the robots in `others`.
+    /// Moves the robot for the period that ends at time `t`; `others` contains the robots nearby.
     pub(super) fn moves(&mut self, t: Nanos, others: &mut Others) {
         let before = self.pose();
         self.robot.swap_others(others);
@@ -77,7 +77,7 @@ impl Member {
         self.way += self.pose().distance(&before).0;
     }
 
-    /// Makes the turn of the plan at time `t`, with the robots in `others` nearby.
+    /// Makes the turn of the plan at time `t`; `others` contains the robots nearby.
     pub(super) fn turn(&mut self, t: Nanos, plan: &Arc<Loaded<CrowdAlphabet>>, others: &mut Others) {
         self.robot.swap_others(others);
         let y = self.robot.senses();

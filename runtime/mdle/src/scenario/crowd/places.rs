@@ -1,4 +1,4 @@
-//! The poses at which the robots of a crowd begin: the points of a lattice, each with a random heading.
+//! The poses at which the robots of a crowd begin. Each is a point of a lattice with a random heading.
 
 use mdle_runtime::{Meters, Pose, Radians};
 use mdle_sim::{Point, World};
@@ -7,7 +7,7 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 use super::super::file::ScenarioError;
 
-/// The points of a lattice over a world, row by row.
+/// Points of a lattice over a world, row by row.
 pub(super) struct Places {
     least: Point,
     columns: u64,
@@ -18,7 +18,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Returns the lattice points between the walls of `world`; `seed` is the random seed of the headings.
+    /// Returns the lattice points between the walls of `world`. The headings are random; `seed` is their random seed.
     pub(super) fn of(world: &World, spacing: f64, seed: u64) -> Self {
         let points = || world.outlines.iter().flat_map(|outline| &outline.points);
         let bound = |of: fn(&Point) -> f64, pick: fn(f64, f64) -> f64| points().map(of).reduce(pick).unwrap_or(0.0);
@@ -53,7 +53,7 @@ impl Iterator for Places {
 /// Returns a square hall with room for `robots` robots at a distance of `spacing` metres from each other.
 ///
 /// # Errors
-/// Never fails, as the text of the hall is valid.
+/// Never fails, because the text of the hall is valid.
 pub(super) fn hall(robots: u64, spacing: f64) -> Result<World, ScenarioError> {
     let rows = libm::ceil(libm::sqrt(robots as f64));
     // Slightly larger than the lattice, so that rounding does not remove a row.

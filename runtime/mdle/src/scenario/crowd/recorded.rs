@@ -10,7 +10,7 @@ use mdle_runtime::{Machine, Nanos, Sensed, Turn, Twist};
 use super::super::records::{remove, unwritten};
 use super::alphabet::CrowdAlphabet;
 
-/// A record that is being written.
+/// The record of a robot, while it is being written.
 pub(super) struct RecordedMember {
     path: PathBuf,
     /// The open record; `None` once it is complete, or cannot be written.
@@ -24,7 +24,7 @@ pub(super) struct RecordedMember {
 }
 
 impl RecordedMember {
-    /// Creates the record of robot `number`: for the log `run.mcap`, the record of robot 17 is `run.17.mcap`.
+    /// Creates the record of robot `number`. For the log `run.mcap`, the record of robot 17 is `run.17.mcap`.
     ///
     /// # Errors
     /// Fails with a message if the record cannot be written.
@@ -65,7 +65,8 @@ impl RecordedMember {
         remove(&self.path);
     }
 
-    /// Completes the record, unless it is complete already, with the output `y` at time `t` and the cause of the end.
+    /// Completes the record with the output `y` at time `t` and the cause of the end. Has no effect if the record is
+    /// already complete.
     pub(super) fn end(&mut self, (y, t): (&Sensed, Nanos), cause: &str) {
         let last = self.next.saturating_sub(1);
         let ended = self.record.take().map_or(Ok(()), |record| record.end(last, (y, t), cause));
@@ -74,7 +75,7 @@ impl RecordedMember {
         }
     }
 
-    /// Returns the message about the error that ended the record, if any.
+    /// Returns the message about the error that ended the record; `None` if there was no error.
     pub(super) fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }

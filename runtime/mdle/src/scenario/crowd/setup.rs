@@ -21,9 +21,9 @@ use super::recorded::RecordedMember;
 
 /// Maximum number of robots.
 const ROBOTS_MOST: u64 = 100_000;
-/// Maximum number of robots that are recorded: each record is an open file.
+/// Maximum number of robots that are recorded. The limit is needed because each record is an open file.
 const RECORDED_MOST: usize = 250;
-/// Default distance between two robots at the start, in metres, which gives each robot 4 m².
+/// Default distance between two robots at the start, in metres. It gives each robot an area of 4 m².
 const SPACING: f64 = 2.0;
 
 /// A crowd.
@@ -38,11 +38,11 @@ pub(in super::super) struct CrowdSetup {
 }
 
 impl CrowdSetup {
-    /// Creates the robots of the crowd in these files. Messages about the plan go to standard error.
+    /// Creates the crowd that these files describe. Messages about the plan go to standard error.
     ///
     /// # Errors
-    /// Fails if a value of the file is invalid, if a file that it names cannot be read, if the plan has errors
-    /// or needs something that a crowd lacks, or if the world has no room.
+    /// Fails if a value in the scenario file is invalid, if a file that it names cannot be read, if the plan has errors
+    /// or needs something that a crowd lacks, or if the world has too little room.
     pub(in super::super) fn read(
         crowd: &CrowdText,
         file: &ScenarioText,
@@ -72,8 +72,8 @@ impl CrowdSetup {
         })
     }
 
-    /// Creates a record for each robot of the crowd, named after its number from 1. `command` is the command that
-    /// repeats the run.
+    /// Creates a record for each robot of the crowd. The name of the record contains the robot's number, which is
+    /// counted from 1. `command` is the command that repeats the run.
     ///
     /// # Errors
     /// Fails with a message if there are too many robots, or if a record cannot be written; in this case, the records

@@ -1,4 +1,4 @@
-//! The poses of a crowd, as a table that grows during the run.
+//! Writes the poses of a crowd as a table, which grows during the run.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -9,11 +9,11 @@ use mdle_runtime::trace::Seconds;
 
 use super::turns::Turns;
 
-/// A file of poses.
+/// The file of a crowd's poses.
 pub(super) struct Trail {
     path: PathBuf,
     file: BufWriter<File>,
-    /// The first error, after which writing stops.
+    /// Result of writing so far. After the first error, nothing more is written.
     written: io::Result<()>,
 }
 

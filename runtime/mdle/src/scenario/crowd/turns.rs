@@ -1,9 +1,9 @@
 //! Runs the turns of a crowd on several threads. The results do not depend on the number of threads.
 //!
-//! In each turn, robots that may touch each other form a group, which one thread handles. The thread moves the robots
-//! of the group one after the other, each among the current poses of the others in the group, and then makes the turns
-//! of their plans. Sonars detect all other robots at their poses at the beginning of the turn. Therefore no result
-//! depends on the order of the groups.
+//! In each turn, robots that may touch each other form a group, and a single thread handles each group. The thread
+//! moves the robots of the group one after the other; each robot moves among the current poses of the others in its
+//! group. Then the thread makes the turns of the robots' plans. Sonars detect all other robots at the poses that they
+//! had at the beginning of the turn. Therefore, no result depends on the order of the groups.
 
 use std::fmt::Write as _;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,7 +19,7 @@ use super::member::Member;
 use super::recorded::RecordedMember;
 use super::setup::CrowdSetup;
 
-/// Number of groups that a thread takes at a time.
+/// Number of groups that a thread takes from the list at a time.
 const TAKES: usize = 16;
 /// Minimum number of robots per thread; with fewer robots, an additional thread would not save time.
 const FOR_A_THREAD: usize = 100;
@@ -33,7 +33,7 @@ pub(super) struct Turns {
     is_recorded: bool,
     /// Distance between the centres of two robots, in metres, within which one may detect the other with its sonars.
     hears: f64,
-    /// Distance between the centres of two robots that may touch in a turn, in metres.
+    /// Distance between the centres of two robots, in metres, within which they may touch in a turn.
     touches: f64,
 }
 
@@ -43,7 +43,7 @@ struct Shared<'t> {
     t: Nanos,
     crowd: Crowd,
     groups: Groups,
-    /// Number of the first group that no thread has taken.
+    /// Index of the first group that no thread has taken.
     next: AtomicUsize,
 }
 
@@ -52,7 +52,7 @@ fn lock(member: &Mutex<Member>) -> MutexGuard<'_, Member> {
 }
 
 impl Turns {
-    /// Returns a crowd before its first turn, with the records of its robots; `records` is empty if they are not
+    /// Creates a crowd before its first turn, with the records of its robots; `records` is empty if they are not
     /// recorded.
     pub(super) fn new(setup: CrowdSetup, records: Vec<RecordedMember>) -> Self {
         let CrowdSetup { robots, plan, threads, .. } = setup;
@@ -84,7 +84,7 @@ impl Turns {
         });
     }
 
-    /// Returns each robot, in order.
+    /// Returns an iterator that locks and yields the robots in the order of their numbers.
     fn each(&self) -> impl Iterator<Item = MutexGuard<'_, Member>> {
         self.members.iter().map(lock)
     }
@@ -106,7 +106,7 @@ impl Turns {
         self.each().for_each(|mut member| member.stop(t));
     }
 
-    /// Returns the message about a record that could not be written, if any.
+    /// Returns the message about a record that could not be written; `None` if there is no such record.
     pub(super) fn fault(&self) -> Option<String> {
         if !self.is_recorded {
             return None;
@@ -114,7 +114,7 @@ impl Turns {
         self.each().find_map(|member| member.fault().map(str::to_owned))
     }
 
-    /// Returns the report at time `t`.
+    /// Returns the report about the crowd at time `t`.
     pub(super) fn summary(&self, t: Nanos) -> String {
         let count = |is_so: fn(&Member) -> bool| self.each().filter(|member| is_so(member)).count();
         let (over, touched) = (count(|member| member.is_over), count(|member| member.has_touched));
@@ -130,7 +130,7 @@ impl Turns {
 }
 
 impl Shared<'_> {
-    /// Makes the turns of groups until none are left.
+    /// Makes the turns of groups until no group is left.
     fn work(&self) {
         let mut others = Others::default();
         loop {
@@ -186,7 +186,7 @@ impl Shared<'_> {
     }
 
     /// Calls `take` with the number and the footprint of each other robot that was within `reach` metres of robot
-    /// `number` when the turn began.
+    /// `number` at the beginning of the turn.
     fn near(&self, number: u32, reach: f64, mut take: impl FnMut(usize, &Footprint)) {
         let Some(own) = self.crowd.bodies().get(number as usize) else { return };
         self.crowd.near(own.at(), reach, |other, body| {

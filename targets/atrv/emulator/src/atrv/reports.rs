@@ -1,4 +1,5 @@
-//! Reports that the robot sends periodically (axis positions, sonar echoes and bumpers), and their schedule.
+//! Reports that the robot sends periodically, and their schedule. They contain axis positions, sonar echoes and bumper
+//! states.
 
 use std::time::Duration;
 
@@ -14,15 +15,15 @@ const A_RANGE: f64 = 1550.0;
 const BOARDS: [u8; 4] = [0, 1, 3, 2];
 /// Range that a sonar without an echo reports, in the sonar's counts.
 const NOTHING: u16 = 32_766;
-/// Distance between consecutive reported positions of a robot with the fault `leap`, in metres.
+/// Distance, in metres, between consecutive positions that a robot with the fault `leap` reports.
 const LEAP: f64 = 3.0;
-/// Interval, in reports, between reports that contain filler.
+/// A report contains filler bytes if its number is a multiple of this value.
 const FILLED: u8 = 7;
 
 /// Schedule of a report that is sent periodically.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Schedule {
-    /// Period of the report; zero if it is never sent.
+    /// Period of the report; zero if the report is never sent.
     period: Duration,
     due: Duration,
 }
@@ -105,7 +106,7 @@ impl Schedule {
         Self { period, due: now + period }
     }
 
-    /// Returns `true` if the report is due, and then schedules the next one.
+    /// Returns `true` if the report is due. In this case, also schedules the next report.
     pub(super) fn is_due(&mut self, now: Duration) -> bool {
         let is_due = !self.period.is_zero() && self.due <= now;
         if is_due {

@@ -7,15 +7,15 @@ use crate::footprint::{Contact, Footprint};
 use crate::point::Point;
 use crate::walls::Walls;
 
-/// Distance by which a slide moves away from the surface, in metres, so that rounding errors do not move the body into
-/// the surface.
+/// Distance, in metres, by which a slide moves the body away from the surface, so that rounding errors do not move the
+/// body into the surface.
 const LED_OFF: f64 = 1e-8;
-/// Maximum number of surfaces along which a step slides; a corner has two.
+/// Maximum number of surfaces along which the body slides in a step. A corner has two surfaces.
 const SLIDES: usize = 3;
 
-/// Returns the movement of `body` for the intended movement `way`: the whole movement if the path is free, otherwise
-/// the movement up to the contact and then along the surface. The movement must be shorter than the body; at its end,
-/// the body overlaps no obstacle.
+/// Returns the movement that `body` makes when it is to move by `way`. If the path is free, this is the whole movement;
+/// otherwise, the body moves up to the contact and then along the surface. The movement must be shorter than the body.
+/// Afterwards, the body overlaps no obstacle.
 pub(crate) fn slid(body: &Footprint, way: Point, walls: &Walls) -> Point {
     let at = body.at();
     let reach = libm::hypot(way.x, way.y) + LED_OFF;
@@ -36,8 +36,8 @@ pub(crate) fn slid(body: &Footprint, way: Point, walls: &Walls) -> Point {
     Point { x: here.x - at.x, y: here.y - at.y }
 }
 
-/// Returns `body` turned by `turn`. If a corner or side would turn into an obstacle, the body is pushed away by the
-/// distance that the turn needs. If there is no space for that, the body does not turn.
+/// Returns `body` turned by `turn`. If a corner or side would turn into an obstacle, the obstacle pushes the body away
+/// by the distance that the turn needs. If there is no space for that, the body does not turn.
 pub(crate) fn turned(body: &Footprint, turn: Radians, walls: &Walls) -> Footprint {
     let Radians(theta) = body.pose.theta;
     let there = Footprint { pose: Pose { theta: Radians(theta + turn.0), ..body.pose }, ..*body };
@@ -59,8 +59,8 @@ fn moved(body: &Footprint, to: Point) -> Footprint {
     Footprint { pose: Pose { x: Meters(to.x), y: Meters(to.y), ..body.pose }, ..*body }
 }
 
-/// Returns the unit vector away from the surface of a contact; `None` if the nearest points of body and surface
-/// coincide.
+/// Returns the unit vector that points away from the surface of a contact; `None` if the nearest points of body and
+/// surface coincide.
 fn normal(contact: Contact) -> Option<Point> {
     let Contact { place, body, .. } = contact;
     let (x, y) = (body.x - place.x, body.y - place.y);
@@ -68,8 +68,8 @@ fn normal(contact: Contact) -> Option<Point> {
     (length > 0.0).then(|| Point { x: x / length, y: y / length })
 }
 
-/// Returns the largest fraction of a step, to a millionth, after which the body is still free; 0 if no fraction is
-/// free.
+/// Returns the largest fraction of a step, to a millionth, after which the body still overlaps no obstacle; 0 if there
+/// is no such fraction.
 fn last_free(free: impl Fn(f64) -> bool) -> f64 {
     let (mut least, mut most) = (0.0, 1.0);
     for _ in 0..20 {

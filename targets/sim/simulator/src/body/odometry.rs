@@ -1,4 +1,4 @@
-//! Odometry: the motion that the wheels measure, and its errors.
+//! Odometry: the motion that the wheels measure, and the errors of this measurement.
 
 use mdle_runtime::{Meters, Pose, Radians};
 
@@ -10,16 +10,16 @@ use crate::point::Point;
 #[derive(Debug, Clone)]
 pub(crate) struct Odometry {
     pub(crate) pose: Pose,
-    /// Errors of this run; `None` for exact odometry.
+    /// Errors of odometry in this run; `None` for exact odometry.
     errors: Option<OdometryErrors>,
 }
 
 #[derive(Debug, Clone)]
 struct OdometryErrors {
     noise: Noise,
-    /// Factor of the measured distance.
+    /// Factor by which the measured distance differs from the true distance.
     way: f64,
-    /// Factor of the measured turn.
+    /// Factor by which the measured turn differs from the true turn.
     turn: f64,
     /// Error of the heading, in radians per metre.
     bend: f64,
@@ -39,7 +39,7 @@ impl Odometry {
         Self { pose: Pose::ORIGIN, errors }
     }
 
-    /// Records that the wheels have rolled an arc of length `way` that turns by `turn`.
+    /// Records that the wheels have rolled along an arc with the length `way` and the angle `turn`.
     pub(crate) fn rolled(&mut self, way: f64, turn: f64) {
         let (mut measured, mut turned) = (way, turn);
         if let Some(errors) = self.errors.as_mut().filter(|_| way != 0.0 || turn != 0.0) {
@@ -50,7 +50,7 @@ impl Odometry {
         self.pose = self.pose.moved(Meters(measured), Radians(turned));
     }
 
-    /// Records that the body, of true heading `heading`, was moved by `way` and turned by `turn`.
+    /// Records that a body with the true heading `heading` was moved by `way` and turned by `turn`.
     pub(crate) fn carried(&mut self, heading: Radians, way: Point, turn: f64) {
         let (sin, cos) = libm::sincos(self.pose.theta.0 - heading.0);
         self.pose = Pose {

@@ -1,4 +1,4 @@
-//! Numerical values of the bodies' models, with their sources.
+//! Numerical values in the models of bodies, with their sources.
 
 use mdle_runtime::{Nanos, Radians, SonarId};
 
@@ -51,10 +51,10 @@ pub(super) fn ideal() -> Model {
     }
 }
 
-/// Returns the model of a Scout. In measurements, a Polaroid module heard a flat wall up to 42° off its normal, an
-/// object that faces the module up to about half of that angle off the axis, and a thin cylinder less far (Cao and
-/// Borenstein, 2002): both limits lie on an ellipse, 21² + 35² = 41². Ranges err by at most 3 cm, so the standard
-/// deviation is a third of that; their absolute error is at most 1 %.
+/// Returns the model of a Scout. In measurements (Cao and Borenstein, 2002), a Polaroid module detected a flat wall up
+/// to 42° off the wall's normal. It detected an object that faces the module up to about half of this angle off the
+/// axis, and a thin cylinder less far. Both limits lie on an ellipse: 21² + 35² = 41². Ranges have errors of at most 3
+/// cm, so the standard deviation is a third of that; their absolute error is at most 1 %.
 pub(super) fn scout() -> Model {
     let ideal = ideal();
     Model {
@@ -87,8 +87,8 @@ pub(super) fn scout() -> Model {
 }
 
 /// Positions in millimetres, and axes in degrees, of the first twelve of the 24 sonars of the ATRV-mini of the
-/// University of Massachusetts, each with the paper's sonar to which it belongs; the other twelve are their mirror
-/// images.
+/// University of Massachusetts, each with the sonar of the paper to which it belongs. The other twelve sonars are
+/// mirror images of these.
 const ATRV_LEFT: [(f64, f64, f64, u8); 12] = [
     (258.17, 114.70, 0.0, 0),
     (252.24, 152.17, 18.0, 1),

@@ -1,5 +1,5 @@
-//! The chart of a run over time: a row for each atom, with a band for each period in which the atom runs, and curves of
-//! signals below.
+//! The chart of a run over time. It has a row for each atom, with a band for each period in which the atom ran, and
+//! curves of signals below.
 
 use mdle_runtime::Nanos;
 use svg::Document;
@@ -14,7 +14,7 @@ use super::sizes::MARGIN;
 const WIDTH: f64 = 960.0;
 /// Width of the column of names at the left, in pixels.
 const NAMES: f64 = 190.0;
-/// Maximum number of letters of a displayed name.
+/// Maximum number of characters of a displayed name.
 const LETTERS_MOST: usize = 24;
 /// Height of a row of atoms, in pixels.
 const ROW: f64 = 22.0;
@@ -22,19 +22,19 @@ const ROW: f64 = 22.0;
 const CURVE: (f64, f64) = (84.0, 22.0);
 /// Minimum distance between two labels of the time axis, in pixels.
 const APART: f64 = 80.0;
-/// Maximum number of rows of atoms; all further atoms share the last row.
+/// Maximum number of rows for atoms. All further atoms share the last row.
 const ROWS_MOST: usize = 24;
 
-/// A run over time.
+/// Data of a run over time.
 #[derive(Debug, Clone, Default)]
 pub struct TimeChart {
     /// Title of the chart.
     pub title: String,
-    /// The atoms, one per row, by the text of their laws.
+    /// Texts of the laws of the atoms; each atom has a row.
     pub atoms: Vec<String>,
-    /// Periods in which atoms ran: the number of the atom, the begin and the end.
+    /// Periods in which atoms ran. Each contains the index of the atom, the beginning and the end.
     pub stays: Vec<(usize, Nanos, Nanos)>,
-    /// The signals, one curve each.
+    /// Signals; each has a curve.
     pub signals: Vec<SignalCurve>,
     /// End of the run.
     pub end: Nanos,
@@ -45,7 +45,7 @@ pub struct TimeChart {
 pub struct SignalCurve {
     /// Name of the signal, with its unit.
     pub name: String,
-    /// Times and values; a value that is not finite leaves a gap.
+    /// Times and values of the signal. A value that is not finite leaves a gap in the curve.
     pub values: Vec<(Nanos, f64)>,
 }
 
@@ -76,7 +76,7 @@ impl TimeChart {
         NAMES + (WIDTH - MARGIN - NAMES) * part
     }
 
-    /// Draws lines at round times, and labels with the times below the bands.
+    /// Draws lines at round times, and labels with these times below the bands.
     fn ticks(&self, top: f64, axis: f64) -> Group {
         let least = self.end.seconds() * APART / (WIDTH - MARGIN - NAMES);
         let step = round_step(least.max(1e-3));
@@ -108,7 +108,7 @@ impl TimeChart {
         group
     }
 
-    /// Draws a signal between its minimum and its maximum.
+    /// Draws the curve of a signal, scaled to the range from its minimum to its maximum.
     fn curve(&self, signal: &SignalCurve, above: f64) -> Group {
         let (height, below) = (CURVE.0, above + CURVE.0);
         let finite = || signal.values.iter().filter(|(_, value)| value.is_finite());

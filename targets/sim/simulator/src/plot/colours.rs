@@ -16,7 +16,7 @@ struct Palette {
     goal: &'static str,
     /// Fill colour of a charger's symbol.
     charge: &'static str,
-    /// Colours of the atoms, used in rotation, each with the colour of a number drawn on it.
+    /// Colours of the atoms, which are used in rotation. Each has the colour for a number that is drawn on it.
     atoms: [(&'static str, &'static str); COUNT],
 }
 
@@ -68,7 +68,7 @@ const DARK: Palette = Palette {
 };
 
 /// Returns the style class that gives an element the colour of this atom. `kind` is `way` for a line, `disc` for the
-/// inside of a disc, and `on` for the number on a disc.
+/// inside of a disc, and `on` for a number on a disc.
 pub(super) fn class(kind: &str, atom: usize) -> String {
     format!("{kind}{}", atom % COUNT)
 }
@@ -101,8 +101,8 @@ mod tests {
 
     type Rgb = [f64; 3];
 
-    /// Matrices that convert linear RGB to the perceived colours: with normal sight, and without red, green or blue
-    /// cones (Machado, Oliveira and Fernandes, 2009, severity 1).
+    /// Matrices that convert linear RGB to perceived colours: for normal sight, and for people without red, green or
+    /// blue cones (Machado, Oliveira and Fernandes, 2009, severity 1).
     const EYES: [[Rgb; 3]; 4] = [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],
@@ -125,8 +125,8 @@ mod tests {
         times(&[0.2126, 0.7152, 0.0722], rgb)
     }
 
-    /// Converts a colour to lightness and two opponent colours (CIE 1976), in which distances correspond approximately
-    /// to perceived differences.
+    /// Converts a colour to lightness and two opponent colours (CIE 1976). In this space, distances correspond
+    /// approximately to perceived differences.
     fn lab(rgb: &Rgb) -> Rgb {
         let part = |row: Rgb, white: f64| {
             let part = times(&row, rgb) / white;

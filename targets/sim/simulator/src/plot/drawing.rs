@@ -1,4 +1,5 @@
-//! The picture of a finished run: the floor, the path driven coloured by atom, echoes and contacts, and the legend.
+//! The picture of a finished run: the floor, the driven path in the colours of the atoms, echoes and contacts, and the
+//! legend.
 
 use std::collections::BTreeSet;
 
@@ -17,10 +18,10 @@ use crate::point::Point;
 use crate::trail::{Companion, Trail};
 use crate::world::World;
 
-/// Maximum distance, in pixels, between two points of the path driven that callouts avoid.
+/// Maximum distance, in pixels, between two points of the driven path that callouts must not cover.
 const STEP: f64 = 6.0;
 
-/// Side length of a square in which at most one echo is drawn, in pixels.
+/// Side length, in pixels, of the squares in which at most one echo is drawn.
 const SQUARE: f64 = 8.0;
 
 /// Draws `trail` on the floor of `world` as an SVG picture.
@@ -48,7 +49,7 @@ pub(super) fn document(layout: &Layout, height: f64) -> Document {
     document.add(Title::new(&layout.title.whole)).add(Style::new(style()))
 }
 
-/// Draws the echoes, at most one in a small square, because more could not be distinguished.
+/// Draws the echoes. In each small square, at most one echo is drawn, because more could not be distinguished.
 fn echoes(layout: &Layout, trail: &Trail) -> Path {
     let shown = trail.echoes.iter().filter(|place| layout.shows_any([**place].into_iter()));
     let mut squares = BTreeSet::new();
@@ -58,7 +59,7 @@ fn echoes(layout: &Layout, trail: &Trail) -> Path {
     path.set("class", "echo").set("stroke-opacity", 0.55).set("stroke-width", 1.6).set("stroke-linecap", "round")
 }
 
-/// Draws the path driven by each atom of the plan's text; one SVG path contains all passes of the atom.
+/// Draws the path that was driven by each atom of the plan's text. One SVG path contains all passes of an atom.
 fn way(layout: &Layout, trail: &Trail) -> Group {
     let data = |way: &[Point]| through(simplified(way.iter().map(|place| layout.at(*place))));
     let ways = &trail.ways;
@@ -74,7 +75,7 @@ fn way(layout: &Layout, trail: &Trail) -> Group {
     driven.fold(group, |group, (atom, data)| group.add(path(data).set("class", class("way", atom))))
 }
 
-/// Draws the body: a disc or rectangle with a line to its front.
+/// Draws the body as a disc or a rectangle, with a line to its front.
 pub(super) fn body(layout: &Layout, pose: &Pose, form: Form, class: &str) -> Group {
     let centre = layout.at(Point::of(pose));
     let front = layout.at(Point::of(&pose.towards(pose.theta, Meters(form.halves().0))));

@@ -1,4 +1,4 @@
-//! The film of a run: its speed, the atoms that run, and the SVG animations, which all repeat with the same period.
+//! The film of a run: its speed, the atoms that run, and its SVG animations, which all repeat with the same period.
 
 use mdle_runtime::Nanos;
 use svg::node::element::{Animate, AnimateTransform};
@@ -10,10 +10,10 @@ use crate::trail::{Mark, Trail};
 
 /// Maximum duration of the film, in seconds, without the pause at the end.
 const SHOWN_MOST: f64 = 20.0;
-/// Maximum number of recorded positions (about 200 m of path) for which the film draws every position.
+/// Maximum number of recorded positions (about 200 m of path) for which the film draws each position.
 const PLACES_MOST: usize = 20_000;
-/// Maximum number of atom runs for which every run is drawn. Beyond it, runs that begin and end between two frames are
-/// omitted.
+/// Maximum number of runs of atoms for which each run is drawn. If there are more, runs that begin and end between two
+/// frames are omitted.
 const ACTS_MOST: usize = 1000;
 /// Pause at the end of the film, in seconds.
 const REST: f64 = 2.5;
@@ -22,28 +22,28 @@ const REST: f64 = 2.5;
 pub(super) struct Film<'f> {
     /// Frames of the run.
     pub(super) frames: &'f [FilmFrame],
-    /// Runs of atoms in the film, in order.
+    /// Runs of atoms that the film shows, in order.
     pub(super) acts: Vec<Act>,
     /// Factor by which the film is faster than the run.
     pub(super) times: f64,
-    /// `true` if the path driven is short enough to be drawn position by position.
+    /// `true` if the driven path is short enough to draw each position.
     smooth: bool,
 }
 
 /// A run of an atom in the film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Act {
-    /// Index of the run among the trail's marks; `None` before the first atom.
+    /// Index of the run among the marks of the trail; `None` before the first atom.
     pub(super) mark: Option<usize>,
     pub(super) from: Nanos,
     pub(super) to: Nanos,
-    /// Index of the act's first frame; the act's last frame is the first frame of the next act.
+    /// Index of the act's first frame. The act's last frame is the first frame of the next act.
     first: usize,
     last: usize,
 }
 
 impl<'f> Film<'f> {
-    /// Returns the film of these frames of `trail`.
+    /// Creates the film of these frames of `trail`.
     pub(super) fn of(frames: &'f [FilmFrame], trail: &Trail) -> Self {
         let marks = &trail.ways.marks;
         let mut acts: Vec<Act> = Vec::new();
@@ -77,8 +77,8 @@ impl<'f> Film<'f> {
         Self { frames, acts, times: round_step((seconds / SHOWN_MOST).max(1.0)), smooth }
     }
 
-    /// Returns the atom that runs in an act, by its index in the list of atoms; `None` before the first atom, or if the
-    /// act combines all passes beyond the maximum number.
+    /// Returns the index of the atom that runs in an act; `None` before the first atom, or if the act combines all
+    /// passes beyond the maximum number.
     pub(super) fn atom(act: &Act, trail: &Trail) -> Option<usize> {
         act.mark.and_then(|mark| trail.ways.marks.get(mark))?.atom
     }
@@ -88,8 +88,8 @@ impl<'f> Film<'f> {
         self.frames.get(act.first..=act.last).unwrap_or_default()
     }
 
-    /// Returns the path driven in an act, followed by the paths of the runs omitted after it; `None` before the first
-    /// atom, or if the whole path is too long to be drawn position by position.
+    /// Returns the path that was driven in an act, followed by the paths of the runs that were omitted after it; `None`
+    /// before the first atom, or if the whole path is too long to draw each position.
     pub(super) fn way(&self, act: &Act, trail: &Trail) -> Option<Vec<Point>> {
         let first = act.mark?;
         let next = self.acts.get(self.acts.partition_point(|other| other.mark <= act.mark)).and_then(|next| next.mark);
@@ -97,18 +97,18 @@ impl<'f> Film<'f> {
         Some(marks.iter().flat_map(|mark| &mark.way).copied().collect())
     }
 
-    /// Returns the time of the run at which the film ends.
+    /// Returns the time of the run that the film's end shows.
     pub(super) fn end(&self) -> Nanos {
         self.frames.last().map_or(Nanos::ZERO, |frame| frame.t)
     }
 
-    /// Returns the fraction of the run that has passed at `t`, from 0 to 1.
+    /// Returns the fraction of the run that has passed at the time `t`, from 0 to 1.
     pub(super) fn part(&self, t: Nanos) -> f64 {
         let end = self.end().seconds();
         if end > 0.0 { (t.seconds() / end).min(1.0) } else { 1.0 }
     }
 
-    /// Returns the duration of the film, with the pause at its end, in seconds.
+    /// Returns the duration of the film in seconds, including the pause at its end.
     pub(super) fn duration(&self) -> f64 {
         libm::round((self.end().seconds() / self.times + REST) * 1e3) / 1e3
     }
@@ -133,8 +133,8 @@ impl<'f> Film<'f> {
         self.smooth(values).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
     }
 
-    /// Returns the animation of an attribute that takes each of these values from its time on; the first value also
-    /// applies before its time.
+    /// Returns the animation of an attribute that has each of these values from the value's time on. The first value
+    /// also applies before its time.
     pub(super) fn switch(&self, attribute: &str, values: impl Iterator<Item = (Nanos, String)>) -> Animate {
         let mut keyed: Vec<(f64, String)> = values.map(|(t, value)| (self.key(t), value)).collect();
         if let Some(first) = keyed.first_mut() {
@@ -144,7 +144,7 @@ impl<'f> Film<'f> {
         self.attributes(&keyed).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
     }
 
-    /// Returns an animation that shows an element from the time `from`, until the time `to` if it is given.
+    /// Returns an animation that shows an element from the time `from` on; if `to` is given, only until the time `to`.
     pub(super) fn visible(&self, from: Nanos, to: Option<Nanos>) -> Animate {
         let before = (self.key(from) > 0.0).then(|| (Nanos::ZERO, "hidden".to_owned()));
         let behind = to.map(|to| (to, "hidden".to_owned()));
@@ -174,14 +174,13 @@ impl<'f> Film<'f> {
     }
 }
 
-/// Returns the last mark from `before` up to, but not including, `begun`, with its number; `None` if the range is
-/// empty.
+/// Returns the last mark in the range `before..begun`, with its index; `None` if the range is empty.
 fn newest(marks: &[Mark], before: usize, begun: usize) -> Option<(usize, &Mark)> {
     let number = begun.checked_sub(1).filter(|number| *number >= before)?;
     Some((number, marks.get(number)?))
 }
 
-/// Returns the values, omitting each value that equals the previous one.
+/// Returns the values without each value that equals the previous one.
 pub(super) fn changes<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
     let mut last = None;
     values.filter(move |(_, value)| last.replace(value.clone()).as_ref() != Some(value))

@@ -1,4 +1,4 @@
-//! The floor of a plot: axes in metres, walls and boxes, and the zone in which a run is to end.
+//! The floor of a plot: axes in metres, walls and boxes, and the zone in which a run has to end.
 
 use svg::node::element::{ClipPath, Group, Path, Rectangle};
 
@@ -79,7 +79,7 @@ fn number(value: f64, step: f64) -> String {
     format!("{:.places$}", libm::round(value / step) * step + 0.0)
 }
 
-/// Draws a charger: the circle in which the centre of a robot has to be, with a lightning symbol in the middle.
+/// Draws a charger: the circle within which the centre of a robot has to be, with a lightning symbol in its centre.
 pub(super) fn socket(circle: impl IntoIterator<Item = Pixel>, (x, y): Pixel) -> Group {
     let flash = format!("M{} {}l-5 9h4l-3 7l8 -10h-4l4 -6z", tenths(x + 1.0), tenths(y - 8.0));
     let flash = Path::new().set("d", flash).set("class", "ink charge").set("stroke-width", 1);

@@ -1,4 +1,4 @@
-//! Places the atoms' numbers beside the positions at which the atoms began, without overlaps.
+//! Arranges the numbers of atoms beside the positions at which the atoms began, without overlaps.
 
 use std::f64::consts::TAU;
 
@@ -6,19 +6,19 @@ use super::shapes::{Pixel, RADIUS};
 
 /// Radius of the dot at the labelled position, in pixels.
 pub(super) const DOT: f64 = 3.0;
-/// Number of directions that are tried around a dot.
+/// Number of directions around a dot that are tried.
 const DIRECTIONS: u8 = 16;
-/// Distances that are tried, in pixels, nearest first.
+/// Distances that are tried, in pixels; the nearest comes first.
 const DISTANCES: [f64; 6] = [22.0, 36.0, 50.0, 66.0, 84.0, 104.0];
 /// Minimum distance between two labels, in pixels.
 const APART: f64 = 3.0;
 
-/// A rectangle: from left to right, and from top to bottom.
+/// A rectangle, given by its left and right edge, and its upper and lower edge.
 pub(super) type LabelBox = ((f64, f64), (f64, f64));
 
-/// Returns the positions of the labels of `dots`, in order. A label is inside `room`, and overlaps no dot and no
-/// earlier label. If possible, it also overlaps none of `lines`, which are given by points no farther apart than the
-/// width of a label.
+/// Returns the positions of the labels of `dots`, in order. A label is inside the given rectangle, and overlaps no dot
+/// and no earlier label. If possible, it also overlaps none of `lines`; these are given as points, whose distance is at
+/// most the width of a label.
 pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bottom)): LabelBox) -> Vec<Pixel> {
     let mut labels: Vec<Pixel> = Vec::with_capacity(dots.len());
     for dot in dots {
@@ -36,7 +36,7 @@ pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bott
     labels
 }
 
-/// Returns candidate positions of a label, best first.
+/// Returns candidate positions of a label; the best comes first.
 fn around((x, y): Pixel) -> impl Iterator<Item = Pixel> {
     DISTANCES.into_iter().flat_map(move |distance| {
         (0..DIRECTIONS).map(move |direction| {

@@ -1,4 +1,4 @@
-//! The layout of a plot: sizes and positions of its parts, in pixels. Both axes have the same scale.
+//! The layout of a plot: sizes and positions of its parts, in pixels. Both axes of the floor have the same scale.
 
 use super::rows::{self, LegendRow};
 use super::shapes::Pixel;
@@ -11,7 +11,7 @@ use crate::world::World;
 
 /// Maximum width and height of the floor in a plot, in pixels.
 const FLOOR_MOST: (f64, f64) = (1080.0, 860.0);
-/// Minimum width and height of the floor in a plot, in pixels, so that there is space for the labels of the axes.
+/// Minimum width and height of the floor in a plot, in pixels. It leaves enough space for the labels of the axes.
 const FLOOR_LEAST: f64 = 160.0;
 /// Maximum scale of a plot, in pixels per metre.
 const SCALE_MOST: f64 = 220.0;
@@ -19,11 +19,11 @@ const SCALE_MOST: f64 = 220.0;
 pub(super) const BELOW: f64 = 44.0;
 /// Height of a line of the legend, in pixels.
 pub(super) const LINE: f64 = 22.0;
-/// Number of lines of the legend in addition to the atoms: the column heads, an empty line, the symbols, and the scale.
+/// Number of lines in the legend in addition to the atoms: the column heads, an empty line, the symbols, and the scale.
 pub(super) const KEY: usize = 9;
 /// Maximum number of symbols of moving objects.
 const SIGNS: usize = 2;
-/// Minimum width of a legend, which its symbols need, in pixels.
+/// Minimum width of a legend, in pixels. The symbols need this width.
 const LEGEND_LEAST: f64 = 170.0;
 
 /// The sizes of a plot.
@@ -41,12 +41,12 @@ pub(super) struct Layout {
     /// Width of the legend, in pixels.
     pub(super) legend: f64,
     pub(super) height: f64,
-    /// Atoms in the order of the legend.
+    /// Rows of the legend, one for each atom.
     pub(super) rows: Vec<LegendRow>,
 }
 
 impl Layout {
-    /// Returns the layout that shows the whole path driven and the floor around it.
+    /// Returns the layout that shows the whole driven path, and the floor around it.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
         let FloorView { x, y } = FloorView::of(world, trail);
         let scale = (FLOOR_MOST.0 / (x.1 - x.0)).min(FLOOR_MOST.1 / (y.1 - y.0)).min(SCALE_MOST);
@@ -68,13 +68,13 @@ impl Layout {
         Self { view: FloorView { x, y }, scale, title, top, chart, legend, height, rows }
     }
 
-    /// Returns the pixel of a place on the floor.
+    /// Returns the pixel of a position on the floor.
     pub(super) fn at(&self, place: Point) -> Pixel {
         let FloorView { x, y } = self.view;
         (MARGIN + LEFT + (place.x - x.0) * self.scale, self.top + (y.1 - place.y) * self.scale)
     }
 
-    /// Returns `true` if an object between these places may be visible.
+    /// Returns `true` if an object between these positions may be visible.
     pub(super) fn shows_any(&self, places: impl Iterator<Item = Point>) -> bool {
         let overlaps = |one: (f64, f64), other: (f64, f64)| one.0 <= other.1 && other.0 <= one.1;
         let (x, y): (Vec<f64>, Vec<f64>) = places.map(|place| (place.x, place.y)).unzip();
@@ -91,28 +91,28 @@ impl Layout {
         self.height - MARGIN - BELOW
     }
 
-    /// Returns the vertical middle of a line of the legend, counted from 0.
+    /// Returns the vertical middle of a line of the legend; lines are counted from 0.
     pub(super) fn line(&self, number: usize) -> f64 {
         self.top + LINE * (number as f64 + 0.5)
     }
 
-    /// Returns the vertical middle of an atom's line in the legend; `atom` is the index of the atom in the order of
-    /// first beginnings.
+    /// Returns the vertical middle of an atom's line in the legend. `atom` is the index of the atom, ordered by the
+    /// times at which atoms first began.
     pub(super) fn line_of(&self, atom: usize) -> f64 {
         // The first line has the column heads; atoms that are not listed share the last line.
         self.line(1 + atom.min(self.rows.len().saturating_sub(1)))
     }
 }
 
-/// Returns the part of a range that is shown, and its size in pixels. The part is larger than the range if the minimum
-/// size requires it.
+/// Returns the range that is shown, and its size in pixels. It is larger than the given range if the minimum size
+/// requires it.
 fn shown((least, most): (f64, f64), scale: f64) -> ((f64, f64), f64) {
     let pixels = libm::ceil(((most - least) * scale).max(FLOOR_LEAST));
     let more = (pixels / scale - (most - least)) / 2.0;
     ((least - more, most + more), pixels)
 }
 
-/// Returns the step between the labels of an axis: one, two or five times a power of ten, at least `least`.
+/// Returns the step between the labels of an axis. It is one, two or five times a power of ten, and at least `least`.
 pub(super) fn round_step(least: f64) -> f64 {
     let power = libm::pow(10.0, libm::floor(libm::log10(least)));
     let step = [1.0, 2.0, 5.0].into_iter().map(|digit| digit * power).find(|step| *step >= least * (1.0 - 1e-9));

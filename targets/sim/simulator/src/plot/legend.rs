@@ -1,4 +1,4 @@
-//! The legend of a plot: each atom with its number, its law and the time at which it began, and the meaning of the
+//! The legend of a plot. It lists each atom with its number, its law and the time at which it began, and explains the
 //! symbols.
 
 use svg::node::element::{Group, Path, Rectangle};
@@ -47,7 +47,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     legend.add(scale_bar(layout))
 }
 
-/// Returns the symbols that occur in the picture, each drawn around height 0, with its meaning.
+/// Returns the symbols that occur in the picture, each drawn around height 0, and their meanings.
 fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &'static str)> {
     let body = |class| Group::new().add(circle((x, 0.0), 7.0).set("fill", "none").set("class", class));
     let mut signs = vec![(body("faint"), "start"), (body("ink"), "end")];

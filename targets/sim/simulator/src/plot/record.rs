@@ -1,7 +1,7 @@
-//! Draws the moving picture of a run: the path grows as the robot drives along it, and the running atom is named.
+//! Draws the moving picture of a run. The path grows as the robot drives along it, and a text names the running atom.
 //!
-//! All animations repeat together, after a pause. A viewer without animation shows the end of the run; a viewer that
-//! runs scripts also shows the time, a pause button and a strip to seek.
+//! All animations repeat together, after a pause. A viewer without animations shows the end of the run. A viewer that
+//! runs scripts also shows the time, a pause button, and a strip for seeking.
 
 use mdle_runtime::{Pose, Radians};
 use svg::node::element::{Group, Path, Rectangle, Script};
@@ -20,7 +20,7 @@ use crate::point::Point;
 use crate::trail::Trail;
 use crate::world::World;
 
-/// Script that shows the time, pauses and seeks. It contains no characters that XML escapes.
+/// Script that shows the time, pauses and seeks. It contains no characters that would have to be escaped in XML.
 const SCRIPT: &str = include_str!("film.js");
 
 /// Draws the moving picture of `trail` on the floor of `world`.
@@ -43,7 +43,7 @@ pub(crate) fn animated(world: &World, trail: &Trail) -> String {
     format!("{document}\n")
 }
 
-/// Returns the path driven by each atom, which grows while the atom runs.
+/// Returns the path that each atom has driven. The path grows while the atom runs.
 fn ways(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     let group = Group::new().set("stroke-width", 2.5).set("stroke-linejoin", "round").set("fill", "none");
     film.acts.iter().fold(group, |group, act| {

@@ -7,7 +7,7 @@ use crate::trail::{Trail, TrailAtom};
 
 /// Maximum number of atoms that are marked and listed.
 pub(super) const ROWS_MOST: usize = 40;
-/// Maximum number of letters of a displayed law.
+/// Maximum number of characters of a displayed law.
 const LAW_MOST: usize = 44;
 /// Distance between two columns, in pixels.
 const APART: f64 = 22.0;
@@ -15,16 +15,16 @@ const APART: f64 = 22.0;
 /// An atom in the legend.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct LegendRow {
-    /// Number of the atom; empty for the line that counts the omitted atoms.
+    /// Number of the atom; empty in the line for all omitted atoms.
     pub(super) number: String,
     pub(super) law: String,
-    /// Number of times that the atom ran; empty if each atom ran once.
+    /// Number of times that the atom ran; empty if every atom ran once.
     pub(super) times: String,
     /// Total time for which the atom ran.
     pub(super) total: String,
 }
 
-/// Returns the rows of a run.
+/// Returns the rows of the legend of a run.
 pub(super) fn of(trail: &Trail) -> Vec<LegendRow> {
     let ways = &trail.ways;
     let again = ways.atoms.iter().any(|atom| atom.times > 1);
@@ -53,7 +53,7 @@ pub(super) fn last_column(rows: &[LegendRow]) -> f64 {
     column(rows.iter().map(|row| &row.total))
 }
 
-/// Returns the width of both columns of numbers, in pixels.
+/// Returns the total width of both columns with numbers, in pixels.
 pub(super) fn columns(rows: &[LegendRow]) -> f64 {
     last_column(rows) + column(rows.iter().map(|row| &row.times))
 }
@@ -63,7 +63,7 @@ fn column<'r>(texts: impl Iterator<Item = &'r String>) -> f64 {
     if letters == 0 { 0.0 } else { letters as f64 * f64::from(LETTERS) * LETTER + APART }
 }
 
-/// Returns the text of a law, shortened to fit, with numbers rounded to a thousandth.
+/// Returns the text of a law, shortened so that it fits. Its numbers are rounded to a thousandth.
 pub(super) fn shortened(law: &str) -> String {
     let words = law.split(' ').map(|word| match (word.split_once('.'), word.parse::<f64>()) {
         (Some((_, decimals)), Ok(number)) if decimals.len() > 3 => format!("{}", libm::round(number * 1e3) / 1e3),

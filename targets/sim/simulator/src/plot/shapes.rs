@@ -7,7 +7,7 @@ use super::colours;
 /// Position in a drawing, in pixels.
 pub(super) type Pixel = (f64, f64);
 
-/// Rounds to a tenth of a pixel; the result is never a negative zero.
+/// Rounds a number to a tenth of a pixel. The result is never a negative zero.
 pub(super) fn tenths(pixels: f64) -> f64 {
     libm::round(pixels * 10.0) / 10.0 + 0.0
 }
@@ -31,7 +31,7 @@ pub(super) fn polyline<P: IntoIterator<Item = Pixel>>(pixels: P) -> Path {
     Path::new().set("d", through(pixels)).set("fill", "none")
 }
 
-/// Returns the path data of a line through these points: the start, then relative steps.
+/// Returns the path data of a line through these points. The data contain the start, and then relative steps.
 pub(super) fn through(pixels: impl IntoIterator<Item = Pixel>) -> String {
     let mut data = String::new();
     let mut last: Option<(i64, i64)> = None;
@@ -47,7 +47,7 @@ pub(super) fn through(pixels: impl IntoIterator<Item = Pixel>) -> String {
     data
 }
 
-/// Returns the path data of a dot at each of these points, for lines with round ends.
+/// Returns the path data of a dot at each of these points. The dots are lines with round ends.
 pub(super) fn dots(pixels: impl IntoIterator<Item = Pixel>) -> String {
     let mut data = String::new();
     let mut last = (0, 0);
@@ -63,16 +63,16 @@ fn whole((x, y): Pixel) -> (i64, i64) {
     (libm::round(x * 10.0) as i64, libm::round(y * 10.0) as i64)
 }
 
-/// Formats two numbers given in tenths; no space is needed before a minus sign.
+/// Formats two numbers, which are given in tenths. A minus sign needs no space before it.
 fn pair((x, y): (i64, i64)) -> String {
     let (x, y) = (x as f64 / 10.0, y as f64 / 10.0);
     if y < 0.0 { format!("{x}{y}") } else { format!("{x} {y}") }
 }
 
-/// Maximum distance of an omitted point from the simplified line, in pixels.
+/// Maximum distance, in pixels, of an omitted point from the simplified line.
 const BESIDE: f64 = 0.2;
 
-/// Omits the points that are not needed to draw a line that looks the same.
+/// Omits points that are not needed to draw a line that looks the same.
 pub(super) fn simplified(pixels: impl IntoIterator<Item = Pixel>) -> Vec<Pixel> {
     let mut kept: Vec<Pixel> = Vec::new();
     // Points since the last kept point.
@@ -93,7 +93,8 @@ pub(super) fn simplified(pixels: impl IntoIterator<Item = Pixel>) -> Vec<Pixel> 
     kept
 }
 
-/// Maximum number of points that one straight line replaces, since the time grows with the square of this number.
+/// Maximum number of points that one straight line replaces. The limit is needed because the computing time grows with
+/// the square of this number.
 const LONGEST: usize = 500;
 
 /// Returns the distance of a point from the line through two other points.

@@ -4,7 +4,7 @@
 pub(super) const MARGIN: f64 = 18.0;
 /// Width of the labels to the left of the floor, in pixels.
 pub(super) const LEFT: f64 = 52.0;
-/// Size of letters in the legend, in pixels.
+/// Font size in the legend, in pixels.
 pub(super) const LETTERS: u32 = 14;
-/// Average width of a sans-serif letter, as a fraction of its height.
+/// Average width of a character in a sans-serif font, as a fraction of the font size.
 pub(super) const LETTER: f64 = 0.56;

@@ -12,7 +12,7 @@ use super::shapes::{badge, line, polyline, tenths, text};
 use super::sizes::{LEFT, LETTERS, MARGIN};
 use crate::trail::Trail;
 
-/// Height of the strip below the floor, with the running atom and the time, in pixels.
+/// Height of the strip below the floor, in pixels. The strip contains the running atom and the time.
 pub(super) const STRIP: f64 = 84.0;
 /// Half the height of the timeline, in pixels.
 const HALF: f64 = 5.0;
@@ -52,7 +52,7 @@ pub(super) fn strip(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
         .add(button((left - 22.0, middle)))
 }
 
-/// Draws the timeline, with each run of an atom in the atom's colour.
+/// Draws the timeline. Each run of an atom has the atom's colour.
 fn times(trail: &Trail, film: &Film<'_>, middle: f64, at: impl Fn(Nanos) -> f64) -> Group {
     let mut data = vec![String::new(); trail.ways.atoms.len()];
     for act in &film.acts {
@@ -68,7 +68,7 @@ fn times(trail: &Trail, film: &Film<'_>, middle: f64, at: impl Fn(Nanos) -> f64)
     })
 }
 
-/// Draws labels with round times below the timeline.
+/// Draws labels for round times below the timeline.
 fn ticks(film: &Film<'_>, below: f64, at: impl Fn(Nanos) -> f64) -> Group {
     let end = film.end().seconds();
     let step = round_step((end * APART / (at(film.end()) - at(Nanos::ZERO))).max(0.1));
@@ -103,7 +103,8 @@ fn running(trail: &Trail, film: &Film<'_>, (x, y): (f64, f64)) -> Group {
     })
 }
 
-/// Returns the text with the duration of the run and the speed of the film; a script writes the current time before it.
+/// Returns the text with the duration of the run and the speed of the film. A script inserts the current time before
+/// it.
 fn speed(film: &Film<'_>, (x, y): (f64, f64)) -> Text {
     let end = format!("{:.1} s", film.end().seconds());
     let fast = match film.times {
@@ -113,7 +114,7 @@ fn speed(film: &Film<'_>, (x, y): (f64, f64)) -> Text {
     text("", (x, y), "end").add(TSpan::new("").set("class", "now")).add(TSpan::new(format!("{end}{fast}")))
 }
 
-/// Draws the pause and resume symbols; both are hidden if the viewer runs no scripts.
+/// Draws the symbols for pause and resume. Both are hidden if the viewer runs no scripts.
 fn button((x, y): (f64, f64)) -> Group {
     let area = Rectangle::new().set("x", x - 14.0).set("y", y - 14.0).set("width", 28).set("height", 28);
     let bars = format!("M{} {}v{}m{} 0v-{}", x - 4.0, y - BUTTON, 2.0 * BUTTON, 8.0, 2.0 * BUTTON);

@@ -1,5 +1,5 @@
-//! Draws the moving objects of a world: doors as dashed lines, other objects at their last position, with the path that
-//! they follow.
+//! Draws the moving objects of a world. Doors are drawn as dashed lines; other objects are drawn at their last
+//! position, with the path that they follow.
 
 use svg::node::element::{Group, Path};
 
@@ -59,7 +59,7 @@ pub(super) fn signs(layout: &Layout, world: &World) -> impl Iterator<Item = Sign
     [Sign::Door, Sign::Moves].into_iter().filter(move |sign| shown.contains(sign))
 }
 
-/// Draws all moving objects at their last position.
+/// Draws all moving objects at their last positions.
 pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     let things = world.things.iter().zip(&trail.things);
     things.fold(ways(layout, world), |group, (thing, gone)| match Sign::of(thing) {
@@ -117,7 +117,7 @@ fn outline(pixels: impl IntoIterator<Item = Pixel>) -> Path {
     polyline(pixels).set("class", "ink solid").set("stroke-width", 1.5)
 }
 
-/// Returns the values, omitting each value that equals both the previous and the next value.
+/// Returns the values without each value that equals both the previous and the next value.
 fn bends<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
     let mut values = values.peekable();
     let mut last: Option<String> = None;

@@ -7,10 +7,10 @@ use super::shapes::text;
 use super::sizes::{LEFT, LETTER, MARGIN};
 use crate::trail::About;
 
-/// Letter sizes of the plan's name and of the lines below it, in pixels.
+/// Font sizes, in pixels, of the plan's name and of the lines below it.
 const NAME: u32 = 18;
 const REST: u32 = 14;
-/// Maximum number of letters of the whole title, which a viewer shows as the picture's name.
+/// Maximum number of characters of the whole title. A viewer shows the whole title as the name of the picture.
 const WHOLE: usize = 400;
 /// Maximum number of lines into which a text is broken.
 const LINES: usize = 3;
@@ -18,14 +18,14 @@ const LINES: usize = 3;
 /// A title, broken into lines.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Title {
-    /// Lines of the title, each with the size of its letters in pixels.
+    /// Lines of the title, each with its font size in pixels.
     lines: Vec<(u32, String)>,
-    /// The title in one line.
+    /// The whole title in one line.
     pub(super) whole: String,
 }
 
 impl Title {
-    /// Returns the title of a run, in lines of at most `width` pixels.
+    /// Creates the title of a run, with lines of at most `width` pixels.
     pub(super) fn of(about: &About, width: f64) -> Self {
         let About { setup, plan, end } = about;
         let all = [(NAME, plan), (REST, end), (REST, setup)].map(|(size, text)| (size, Printable(text).to_string()));
@@ -60,7 +60,8 @@ fn height(size: u32) -> f64 {
     f64::from(size) * 1.4
 }
 
-/// Breaks a text between words into at most [`LINES`] lines of `letters` letters; a text that does not fit ends in `…`.
+/// Breaks a text between words into at most [`LINES`] lines of at most `letters` characters. A text that does not fit
+/// ends with `…`.
 fn wrapped(text: &str, letters: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

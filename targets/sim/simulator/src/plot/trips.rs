@@ -1,4 +1,4 @@
-//! Draws the trips of several robots: one floor per robot, and one line per trip, as in Fig. 12 of the paper.
+//! Draws the trips of several robots: one floor per robot, and one line per trip, as in the paper's Fig. 12.
 
 use mdle_runtime::Pose;
 use svg::Document;
@@ -13,7 +13,7 @@ use crate::point::Point;
 
 /// Width of a picture, in pixels.
 const WIDTH: f64 = 960.0;
-/// Width of the labels at the left of a floor, and of the list of trips at its right, in pixels.
+/// Two widths, in pixels: of the labels to the left of a floor, and of the list of trips to its right.
 const SIDES: (f64, f64) = (40.0, 230.0);
 /// Maximum height of a floor, in pixels.
 const HIGH: f64 = 420.0;
@@ -21,7 +21,7 @@ const HIGH: f64 = 420.0;
 const BELOW: f64 = 34.0;
 /// Height of a line of text, in pixels.
 const LINE: f64 = 20.0;
-/// Maximum number of listed trips.
+/// Maximum number of trips in the list.
 const LISTED: usize = 16;
 /// Minimum distance between two circles on the first trip, in pixels.
 const CIRCLES: f64 = 14.0;
@@ -30,7 +30,7 @@ const SHORTEST: f64 = 0.2;
 /// Minimum distance between two labels of an axis, in pixels.
 const APART: f64 = 50.0;
 
-/// Trips of several robots: the paths driven under the laws `path` and `Follow`.
+/// Trips of several robots. A trip is the path that a robot drives under the law `path` or `Follow`.
 #[derive(Debug, Clone)]
 pub struct TripDrawing {
     title: String,
@@ -55,7 +55,7 @@ fn figures(way: &[Point]) -> (f64, f64) {
 }
 
 impl TripDrawing {
-    /// Begins the record; `title` describes the run.
+    /// Begins the record; `title` is a text about the run.
     #[must_use]
     pub fn of(title: &str) -> Self {
         Self { title: title.to_owned(), robots: Vec::new() }
@@ -119,7 +119,7 @@ impl Floor {
         Self { x, y, scale, height: ((y.1 - y.0) * scale).max(LINE * LISTED as f64 / 2.0) }
     }
 
-    /// Returns the pixel of a point of the floor; `top` is the height of the floor's upper edge.
+    /// Returns the pixel of a point on the floor; `top` is the height of the upper edge of the drawn floor.
     fn at(&self, place: &Point, top: f64) -> Pixel {
         (MARGIN + SIDES.0 + (place.x - self.x.0) * self.scale, top + (self.y.1 - place.y) * self.scale)
     }

@@ -1,13 +1,14 @@
-//! The part of the floor that a plot shows: the path driven, and the floor around it.
+//! The part of the floor that a plot shows: the driven path, and the floor around it.
 
 use crate::trail::Trail;
 use crate::world::World;
 
 /// Margin around walls, in metres.
 const AROUND: f64 = 0.4;
-/// Margin around the path driven, in metres; smaller where the world ends.
+/// Margin around the driven path, in metres. It is smaller where the world ends.
 const ROOM: f64 = 2.0;
-/// Minimum fraction of the world's area: a view that covers this fraction is replaced by the whole world.
+/// Minimum fraction of the world's area from which the whole world is shown: a view that covers this fraction is
+/// replaced by the whole world.
 const MOST: f64 = 0.5;
 
 /// A rectangle of the floor, in metres.
@@ -18,8 +19,8 @@ pub(super) struct FloorView {
 }
 
 impl FloorView {
-    /// Returns the view of the path driven with the floor around it, or of the whole world if the world is at most
-    /// twice as large.
+    /// Returns the view of the driven path with the floor around it. If the world is at most twice as large as this
+    /// view, returns the whole world.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
         // Without a world, the view is based on the echoes that the robot has heard.
         let heard = || trail.echoes.iter().copied().filter(|_| world.places().next().is_none());

@@ -1,18 +1,20 @@
-//! Finds the contours of the occupied pixels of a map, and removes the pixel steps of slanted lines.
+//! Finds the contours of the occupied pixels in a map, and smooths the pixel steps of slanted lines.
 
 /// Maximum distance, in pixels, between a line and the pixel corners that it replaces. The steps of a slanted line
-/// deviate by up to 1, and by a little more if the line begins at an unfavourable corner.
+/// deviate by up to 1 pixel, and by a little more if the line begins at an unfavourable corner.
 const TOLERANCE: f64 = 1.25;
-/// Maximum number of pixel sides between occupied and free pixels: 200 km of walls at 5 cm.
+/// Maximum number of pixel sides between occupied and free pixels. At 5 cm per pixel, this corresponds to 200 km of
+/// walls.
 const SIDES_MOST: usize = 4_000_000;
-/// Maximum number of corners that are smoothed together, since the time grows with the square of this number.
+/// Maximum number of corners that are smoothed together. The limit is needed because the computing time grows with the
+/// square of this number.
 const TOGETHER: usize = 1024;
 
-/// A corner of a pixel, given by the column and the row of its grid lines.
+/// A corner of a pixel: the column and the row of the pixel whose upper left corner it is.
 type Corner = (i32, i32);
 
-/// Possible steps from a corner, in the order of the bits of [`Sides::steps`]. If a line can begin with either of two
-/// steps, it begins with the earlier one, which belongs to the upper pixel.
+/// Possible steps from a corner, in the order of the bits of [`Sides::steps`]. If a line can continue with either of
+/// two steps from its first corner, it takes the one that is earlier in this list and belongs to the upper pixel.
 const STEPS: [Corner; 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
 
 /// Returns closed lines around the occupied pixels. Each line ends where it began; the order of the lines depends only
@@ -47,12 +49,12 @@ pub(super) fn contours(
     Ok(loops)
 }
 
-/// Pixel sides with an occupied pixel on their left and a free one on their right, as steps from each corner.
+/// Pixel sides with an occupied pixel on their left and a free one on their right, stored as steps from each corner.
 struct Sides {
-    /// Steps from each corner, as bits; column by column.
+    /// Possible steps from each corner, one bit for each step. The corners are stored column by column.
     steps: Vec<u8>,
     rows: usize,
-    /// Index before which all corners have no steps left.
+    /// Index of a corner; all corners before it have no steps left.
     next: usize,
 }
 
@@ -110,7 +112,7 @@ impl Sides {
     }
 }
 
-/// Simplifies a line: no omitted corner is further from the new line than the tolerance.
+/// Returns a simplified line. No omitted corner is further from the new line than the tolerance.
 fn smoothed(line: &[Corner]) -> Vec<Corner> {
     let far = |from: Corner| {
         let distance = |to: &Corner| i64::from(to.0 - from.0).pow(2) + i64::from(to.1 - from.1).pow(2);
@@ -135,7 +137,8 @@ fn smoothed(line: &[Corner]) -> Vec<Corner> {
     line.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(corner, _)| *corner).collect()
 }
 
-/// Marks the corners that are needed between the corners `from` and `to` of a line (Douglas and Peucker, 1973).
+/// Marks the corners between the corners `from` and `to` of a line that the simplified line needs (algorithm of Douglas
+/// and Peucker, 1973).
 fn keep(line: &[Corner], from: usize, to: usize, kept: &mut [bool]) {
     let mut open = vec![(from, to)];
     while let Some((from, to)) = open.pop() {

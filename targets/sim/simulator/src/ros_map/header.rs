@@ -5,7 +5,7 @@ use crate::world_error::WorldError;
 /// Minimum and maximum size of a pixel, in metres.
 const RESOLUTIONS: std::ops::RangeInclusive<f64> = 1e-4..=100.0;
 
-/// Contents of the YAML file of a ROS map.
+/// Contents of the YAML file of a map of the Robot Operating System (ROS).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Header {
     /// Path of the image, relative to the folder of the YAML file.
@@ -83,7 +83,8 @@ fn value<'t>(text: &'t str, key: &str) -> Option<HeaderValue<'t>> {
     Some(trimmed(number, line, key.len() + 1, line.get(key.len() + 1..)?))
 }
 
-/// Returns the values of a key that has several values: `[1, 2]`, or one line `- 1` for each.
+/// Returns the values of a key that has several values: written as `[1, 2]`, or as one line such as `- 1` for each
+/// value.
 fn numbers<'t>(text: &'t str, key: &str) -> Vec<HeaderValue<'t>> {
     let Some((number, line)) = line(text, key) else { return Vec::new() };
     let Some(begins) = line.find('[') else {
@@ -110,7 +111,7 @@ fn line<'t>(text: &'t str, key: &str) -> Option<(usize, &'t str)> {
     (1..).zip(text.lines()).find(|(_, line)| line.strip_prefix(key).is_some_and(|rest| rest.starts_with(':')))
 }
 
-/// Returns the value that begins at a byte of a line, without spaces, comment and quotes.
+/// Returns the value that begins at the byte `from` of a line, without spaces, comment and quotes.
 fn trimmed<'t>(line: usize, whole: &'t str, from: usize, part: &'t str) -> HeaderValue<'t> {
     let part = part.split(" #").next().unwrap_or_default();
     let blanks = part.len() - part.trim_start().len();

@@ -41,8 +41,8 @@ impl Image {
         Ok(Self { width, height, white, grey })
     }
 
-    /// Returns, for each pixel, `true` if its darkness, from 0 to 1, exceeds `than`. If `negate` is `true`, white
-    /// counts as dark.
+    /// Returns, for each pixel, `true` if its darkness, from 0 to 1, exceeds `than`. If `negate` is `true`, white is
+    /// treated as dark.
     pub(super) fn darker(&self, than: f64, negate: bool) -> Vec<bool> {
         let is_dark = |grey: u16| {
             let bright = f64::from(grey) / f64::from(self.white);
@@ -55,7 +55,7 @@ impl Image {
     }
 }
 
-/// Remaining words of the file, without comments from `#` to the end of a line.
+/// The part of the file that is not read yet. Its words exclude comments, which extend from `#` to the end of the line.
 struct Words<'b>(&'b [u8]);
 
 impl<'b> Words<'b> {
@@ -80,7 +80,7 @@ impl<'b> Words<'b> {
         numbers.take(count).collect()
     }
 
-    /// Reads one byte per pixel, or two bytes (big-endian), after one white space.
+    /// Reads one byte per pixel, or two bytes (big-endian), after one white-space character.
     fn bytes(&mut self, count: usize, white: u16) -> Vec<u16> {
         let bytes = self.0.get(1..).unwrap_or_default();
         if white < 256 {

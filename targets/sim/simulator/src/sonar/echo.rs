@@ -1,10 +1,10 @@
-//! The echo of one ping: determines which rays of a sonar's cone return loud enough to be heard, and which of them
-//! returns first.
+//! Computes the echo of one ping: determines which rays of a sonar's cone return loud enough to be detected, and which
+//! of them returns first.
 //!
-//! A ray at angle α off the axis that hits a surface at angle β off its normal is heard if (α / lobe)² + (β / facing)²
-//! is at most 1 minus the loss over the distance. Near an edge, a small part of the sound is scattered in all
-//! directions: there, a fixed loss replaces the term of β. A rough surface scatters too: the loss due to β is reduced
-//! by the fraction `rough`. A right-angled corner reflects all sound back to its source.
+//! A ray at angle α off the axis that hits a surface at angle β off its normal is detected if (α / lobe)² + (β /
+//! facing)² is at most 1 minus the loss over the distance. Near an edge, a small part of the sound is scattered in all
+//! directions: there, a fixed loss replaces the term that contains β. A rough surface scatters too: the loss due to β
+//! is reduced by the fraction `rough`. A right-angled corner reflects all sound back to its source.
 //!
 //! The rays of a cone are so far apart that a person 4 m away may be between two rays. Therefore one additional ray is
 //! aimed at each moving object and each other robot, of which there are few.
@@ -19,16 +19,16 @@ use crate::walls::{Reached, Walls};
 
 /// Number of rays of a cone, which are evenly spread.
 const RAYS: u8 = 7;
-/// Maximum distance from an edge at which the edge scatters a ray, in metres.
+/// Maximum distance between an edge and the point that a ray hits at which the edge scatters the ray, in metres.
 const SCATTERS: f64 = 0.08;
-/// Loss at an edge, which is then heard up to 0.6 of the lobe, that is 12.5° of 21°.
+/// Loss at an edge. With it, an edge is detected up to 0.6 of the angle of the lobe: up to 12.5° for a lobe of 21°.
 const EDGE_COSTS: f64 = 0.65;
-/// Distance up to which the receiver's growing gain compensates the loss, in metres.
+/// Distance, in metres, up to which the gain of the receiver, which increases with time, compensates for the loss.
 const GAIN_LASTS: f64 = 2.0;
-/// Loss per metre beyond [`GAIN_LASTS`]: at 6.5 m, a wall is heard up to 26° off its normal.
+/// Loss per metre beyond [`GAIN_LASTS`]: at 6.5 m, a wall is detected up to 26° off its normal.
 const METRE_COSTS: f64 = 0.13;
 /// Maximum distance between the two reflections of a ray in a corner, per metre of range, at which the sound still
-/// returns to the sonar. The neighbouring ray into the corner itself returns in the same way.
+/// returns to the sonar.
 const CORNER: f64 = 0.35;
 /// Maximum cosine of the angle between a ray into a corner and the ray that leaves it: the ray leaves within 15° of the
 /// opposite direction.
@@ -36,8 +36,8 @@ const BACK: f64 = -0.966;
 /// Distance from a surface at which a reflected ray begins, in metres, so that it does not hit the surface again.
 const OFF: f64 = 1e-6;
 
-/// Returns the distance, in metres, from a transducer to the nearest object that it hears in its cone; `None` if it
-/// hears no object. `fade` is the gain or loss of loudness of this ping.
+/// Returns the distance, in metres, from a transducer to the nearest object in its cone from which it receives an echo;
+/// `None` if it receives no echo. `fade` is the gain or loss of loudness of this ping.
 pub(crate) fn echo(walls: &Walls, from: Point, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
     let spread = (0..RAYS).map(|ray| hearing.half_cone.0 * (2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0));
     let others = walls.others_in(from, axis, hearing.half_cone);
@@ -68,7 +68,7 @@ pub(crate) fn echo(walls: &Walls, from: Point, axis: Radians, hearing: &Hearing,
     best
 }
 
-/// Returns the range at which a ray hears this surface; `None` if the ray does not hear it. `lost` is the loss of the
+/// Returns the range of the echo of a ray from this surface; `None` if the echo is too weak. `lost` is the loss of the
 /// ray before it hits the surface.
 fn heard(
     walls: (&Walls, Reached<'_>),
@@ -93,7 +93,7 @@ fn heard(
 }
 
 /// Returns the range of the corner to which this surface belongs; `None` if no corner reflects the ray back. `bounced`
-/// contains the obstacles that the ray may hit after it has left the surface.
+/// contains the obstacles that the ray may hit after its first reflection.
 fn corner((walls, bounced): (&Walls, Reached<'_>), from: Point, way: Point, first: &Surface) -> Option<f64> {
     let on = reflected(way, first.normal);
     let bounce = Point {

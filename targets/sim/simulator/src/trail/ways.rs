@@ -1,4 +1,4 @@
-//! The path driven by a robot, divided by atoms. The number of stored positions is limited, and each pass of an atom
+//! Stores the path of a robot, divided by atoms. The number of stored positions is limited, and each pass of an atom
 //! has its own part of the path.
 
 use std::collections::BTreeMap;
@@ -14,10 +14,10 @@ const PLACES_MOST: usize = 100_000;
 /// Maximum number of passes whose paths are stored separately, and of atoms that are counted.
 const MARKS_MOST: usize = 10_000;
 
-/// The path driven, and the atoms that drove it.
+/// The path of a robot, and the atoms that drove it.
 #[derive(Debug, Clone)]
 pub(crate) struct Ways {
-    /// Path driven before the first atom began.
+    /// Path before the first atom began.
     pub(crate) before: Vec<Point>,
     /// Passes of atoms, in order.
     pub(crate) marks: Vec<Mark>,
@@ -28,8 +28,8 @@ pub(crate) struct Ways {
     /// Index in `atoms` by number and law. Numbers alone are ambiguous, because plans that replace each other may use
     /// the same numbers.
     by_number: BTreeMap<(u64, String), usize>,
-    /// Index of the running atom, and the time up to which its total time has been counted; `None` while no atom in
-    /// `atoms` runs.
+    /// Index of the running atom, and the time up to which its total time has been counted; `None` while none of the
+    /// atoms in `atoms` runs.
     running: Option<(usize, Nanos)>,
     /// Number of stored positions.
     count: usize,
@@ -51,13 +51,13 @@ pub(crate) struct TrailAtom {
     pub(crate) total: Nanos,
 }
 
-/// A pass of an atom, with the path driven in it.
+/// A pass of an atom, with its path.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Mark {
     /// Index of the atom in [`Ways::atoms`]; `None` for the mark that combines all passes beyond the maximum number.
     pub(crate) atom: Option<usize>,
     pub(crate) t: Nanos,
-    /// Path driven, from the position where the pass began.
+    /// Path, from the position where the pass began.
     pub(crate) way: Vec<Point>,
 }
 
@@ -169,7 +169,7 @@ impl Ways {
         self.running = None;
     }
 
-    /// Returns all recorded places.
+    /// Returns all recorded positions.
     pub(super) fn places(&self) -> impl Iterator<Item = Point> {
         self.before.iter().chain(self.marks.iter().flat_map(|mark| &mark.way)).copied()
     }

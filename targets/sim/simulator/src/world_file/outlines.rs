@@ -13,7 +13,7 @@ use crate::point::Point;
 
 /// Maximum coordinate, in metres; beyond it, rounding would lose millimetres.
 const FURTHEST: f64 = 1e6;
-/// Number of corners of the polygon that approximates a disc; at a radius of 1 m the error is 2 mm.
+/// Number of corners of the polygon that approximates a disc; for a radius of 1 m, the error is 2 mm.
 const CORNERS: u32 = 48;
 /// Default reach of a charger, in metres.
 const REACH: f64 = 0.1;
@@ -221,7 +221,7 @@ impl Unit {
     }
 }
 
-/// Returns the roughness given for the whole file or for one obstacle; `whole` if no roughness is given.
+/// Returns the roughness given for the whole file or for one obstacle; `whole` if it is absent.
 pub(super) fn rough(written: Option<&Spanned<f64>>, whole: f64) -> Result<f64, Wrong> {
     let Some(written) = written else { return Ok(whole) };
     let value = *written.get_ref();

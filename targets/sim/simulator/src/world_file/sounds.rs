@@ -12,7 +12,7 @@ use crate::point::Point;
 const LEVEL: f64 = 10.0;
 /// Minimum and maximum level, in dB.
 const LEVELS: (f64, f64) = (-40.0, 80.0);
-/// Maximum number of sources, since each source costs a convolution in each turn.
+/// Maximum number of sources. It is limited because each source requires a convolution in each turn.
 const MOST: usize = 8;
 /// Kinds of sound.
 const KINDS: [(&str, SoundKind); 2] = [("white", SoundKind::White), ("speech", SoundKind::Speech)];

@@ -111,7 +111,7 @@ pub(super) struct DoorText {
     pub(super) every: Option<Spanned<f64>>,
 }
 
-/// A value that must be a table: serde would also accept an array, and ignore its surplus values.
+/// A value that must be a table. Without this type, serde would also accept an array and ignore its surplus values.
 #[derive(Default)]
 pub(super) struct TomlTable<T>(pub(super) T);
 
