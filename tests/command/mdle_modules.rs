@@ -59,10 +59,13 @@ fn a_child_process_is_loaded_as_a_module() {
 #[test]
 fn a_module_that_never_returns_ends_the_program() {
     let commands = "step 3\nset /usr/heading/name for ever\nstep 2\nget /clock/turns\n";
-    let dialogue = dialogue("modules_hang", &[], commands);
+    let log = folder("modules_hang_log").join("hang.jsonl");
+    let dialogue = dialogue("modules_hang", &["--log", log.to_str().unwrap()], commands);
     let sentence =
         "a fault stopped the robot: turn 3 has not ended after 10 s: code of the module `heading` never returns";
     assert!(dialogue.ends_with(&format!("---\nerror: {sentence}\n[3]\n")), "{dialogue}");
+    let log = fs::read_to_string(log).unwrap();
+    assert_eq!(log.lines().count(), 3, "{log}");
 }
 
 #[test]

@@ -116,6 +116,10 @@ fn a_report_leaves_the_line_alone_that_is_typed() {
     let answer = answer + terminal.shown().get(answer..).map_or(0, str::len);
     terminal.press("cd /usr/robot\rpwd\rget /clock/period\r");
     terminal.wait_for(answer, &["/usr/robot > ", "pwd", "/usr/robot", "get /clock/period", "0.1s", "/usr/robot > "]);
+    // A command continues on the next line.
+    let answer = answer + terminal.shown().get(answer..).map_or(0, str::len);
+    terminal.press("get \\\r/clock/pace\r");
+    terminal.wait_for(answer, &["get \\", "/clock/pace", "\n", "1", "\n", "/usr/robot > "]);
     terminal.press("\x04");
     let (status, shown) = terminal.end();
     assert_eq!(status.code(), Some(0), "{shown}");

@@ -24,6 +24,10 @@ const CHUNK: usize = 1 << 13;
 const LAG: Duration = Duration::from_secs(5);
 /// Maximum wait between two checks of the deadline.
 const LOOK: Duration = Duration::from_millis(20);
+/// Time after which an idle thread also writes text that was not flushed: a turn that never returns flushes nothing.
+const IDLE: Duration = Duration::from_secs(1);
+/// Line in place of text that was dropped.
+const MISSING: &[u8] = b"(lines are missing here: they were not read in time)\n";
 
 /// Policy for text that does not fit into the queue of a slow reader while a robot is being driven.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,11 +42,8 @@ pub(crate) enum Keeps {
 /// is written, but at most as long as [`Patience`] permits. Dropping the writer waits in the same way.
 #[derive(Debug)]
 pub(crate) struct Outlet {
-    piece: Vec<u8>,
     keeps: Keeps,
     patience: Patience,
-    /// `true` if text has been dropped since text was last passed to the thread.
-    lost: bool,
     /// `true` once the writer no longer waits for the reader.
     given_up: bool,
     shared: Arc<WriterQueue>,
@@ -56,6 +57,10 @@ struct WriterQueue {
 
 #[derive(Debug)]
 struct Queue {
+    /// Text collected since text was last passed to the thread.
+    collected: Vec<u8>,
+    /// `true` if text has been dropped since text was last passed to the thread.
+    lost: bool,
     pieces: VecDeque<Vec<u8>>,
     /// Number of bytes that are queued or being written.
     bytes: usize,
@@ -75,18 +80,39 @@ impl WriterQueue {
 }
 
 impl Queue {
-    /// Appends a piece of text. If the queue has no space, returns the piece as the error. An empty queue has space for
-    /// a piece of any length.
-    fn push(&mut self, piece: Vec<u8>) -> Result<(), Vec<u8>> {
-        if self.bytes > 0 && self.bytes.saturating_add(piece.len()) > WAITING {
-            return Err(piece);
+    /// Appends a piece of text. Returns `false`, and drops the piece, if the queue has no space. An empty queue has
+    /// space for a piece of any length.
+    fn push(&mut self, piece: Vec<u8>) -> bool {
+        let has_space = self.has_space(piece.len());
+        if has_space {
+            self.append(piece);
         }
+        has_space
+    }
+
+    /// Passes the collected text to the thread. Returns `false`, and keeps the text, if the queue has no space.
+    fn hand_over(&mut self) -> bool {
+        let has_space = self.has_space(self.collected.len());
+        if has_space {
+            let mut piece = std::mem::take(&mut self.collected);
+            if std::mem::take(&mut self.lost) {
+                piece.splice(0..0, MISSING.iter().copied());
+            }
+            self.append(piece);
+        }
+        has_space
+    }
+
+    fn has_space(&self, length: usize) -> bool {
+        self.bytes == 0 || self.bytes.saturating_add(length) <= WAITING
+    }
+
+    fn append(&mut self, piece: Vec<u8>) {
         if self.bytes == 0 {
             self.moved = Instant::now();
         }
         self.bytes += piece.len();
         self.pieces.push_back(piece);
-        Ok(())
     }
 
     /// Returns an error once the thread has ended.
@@ -106,6 +132,8 @@ impl Outlet {
     /// Fails if the system cannot create a thread.
     pub(crate) fn open(sink: impl Write + Send + 'static, keeps: Keeps, patience: &Patience) -> io::Result<Self> {
         let queue = Queue {
+            collected: Vec::new(),
+            lost: false,
             pieces: VecDeque::new(),
             bytes: 0,
             moved: Instant::now(),
@@ -116,7 +144,7 @@ impl Outlet {
         let shared = Arc::new(WriterQueue { queue: Mutex::new(queue), changed: Condvar::new() });
         let writer = Arc::clone(&shared);
         Builder::new().name("writer".to_owned()).stack_size(STACK).spawn(move || write_all(sink, &writer))?;
-        Ok(Self { piece: Vec::new(), keeps, patience: patience.clone(), lost: false, given_up: false, shared })
+        Ok(Self { keeps, patience: patience.clone(), given_up: false, shared })
     }
 
     /// Returns a handle with which other threads write text without waiting.
@@ -126,38 +154,33 @@ impl Outlet {
 
     /// Passes the text collected so far to the thread.
     fn hand_over(&mut self) -> io::Result<()> {
-        if self.piece.is_empty() {
-            return Ok(());
-        }
-        let mut piece = std::mem::take(&mut self.piece);
-        if self.lost {
-            piece.splice(0..0, *b"(lines are missing here: they were not read in time)\n");
-        }
         let shared = Arc::clone(&self.shared);
         let begun = Instant::now();
         let mut queue = shared.queue();
+        if queue.collected.is_empty() {
+            return Ok(());
+        }
         loop {
             queue.check()?;
-            piece = match queue.push(piece) {
-                Ok(()) => break,
-                Err(piece) => piece,
-            };
+            if queue.hand_over() {
+                break;
+            }
             if self.has_no_patience(queue.moved.max(begun)) {
-                return self.without_room();
+                queue.collected.clear();
+                return self.without_room(&mut queue);
             }
             queue = self.wait(queue);
         }
-        self.lost = false;
         shared.changed.notify_all();
         let lags = self.keeps == Keeps::All && self.is_driving() && queue.moved.elapsed() >= LAG;
         if lags { Err(too_slow(LAG)) } else { Ok(()) }
     }
 
-    /// Handles text that does not fit into the queue: either drops it or returns an error.
-    fn without_room(&mut self) -> io::Result<()> {
+    /// Handles text that does not fit into the queue: either reports it as dropped or returns an error.
+    fn without_room(&mut self, queue: &mut Queue) -> io::Result<()> {
         match self.keeps {
             Keeps::WhatIsRead if self.is_driving() => {
-                self.lost = true;
+                queue.lost = true;
                 Ok(())
             }
             Keeps::WhatIsRead | Keeps::All => {
@@ -214,8 +237,11 @@ fn unread(limit: Duration) -> String {
 
 impl Write for Outlet {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.piece.extend_from_slice(bytes);
-        if self.piece.len() >= PIECE {
+        let mut queue = self.shared.queue();
+        queue.collected.extend_from_slice(bytes);
+        let is_full = queue.collected.len() >= PIECE;
+        drop(queue);
+        if is_full {
             self.hand_over()?;
         }
         Ok(bytes.len())
@@ -243,7 +269,7 @@ pub(crate) struct Aside(Arc<WriterQueue>);
 impl Aside {
     /// Passes a text to the outlet, or drops it if there is no space.
     pub(crate) fn tell(&self, text: String) {
-        let _ = self.0.queue().push(text.into_bytes());
+        let _was_taken = self.0.queue().push(text.into_bytes());
         self.0.changed.notify_all();
     }
 }
@@ -253,7 +279,11 @@ fn write_all(mut sink: impl Write, shared: &WriterQueue) {
     let written = loop {
         let mut queue = shared.queue();
         while queue.pieces.is_empty() && !queue.is_closed {
-            queue = shared.changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
+            let (woken, wait) = shared.changed.wait_timeout(queue, IDLE).unwrap_or_else(PoisonError::into_inner);
+            queue = woken;
+            if wait.timed_out() && !queue.collected.is_empty() {
+                queue.hand_over();
+            }
         }
         let Some(piece) = queue.pieces.pop_front() else { break Ok(()) };
         drop(queue);

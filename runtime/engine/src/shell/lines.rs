@@ -6,7 +6,7 @@ use rustyline::completion::Completer;
 use rustyline::error::ReadlineError;
 use rustyline::highlight::Highlighter;
 use rustyline::hint::Hinter;
-use rustyline::validate::Validator;
+use rustyline::validate::{ValidationContext, ValidationResult, Validator};
 use rustyline::{Config, Context, Editor, ExternalPrinter, Helper};
 
 use crate::tree::Hub;
@@ -84,7 +84,7 @@ impl<R: BufRead> Lines for FileLines<R> {
             let Ok(line) = String::from_utf8(line) else {
                 return Typed::Unusable(self.number, NO_TEXT.to_owned());
             };
-            match line.strip_suffix('\\') {
+            match continued(&line) {
                 Some(part) if (text.len() + part.len()) as u64 <= LONGEST => {
                     text.push_str(part);
                     text.push(' ');
@@ -94,6 +94,11 @@ impl<R: BufRead> Lines for FileLines<R> {
             }
         }
     }
+}
+
+/// Returns the line without its `\` if the command continues on the next line. A comment does not continue.
+fn continued(line: &str) -> Option<&str> {
+    line.strip_suffix('\\').filter(|part| !part.trim_start().starts_with('#'))
 }
 
 /// Function that prints whole lines above the line that is being typed.
@@ -129,7 +134,8 @@ impl Lines for TerminalLines {
             here.clone_into(&mut helper.here);
         }
         match self.editor.readline(&format!("{here} > ")) {
-            Ok(line) => {
+            Ok(lines) => {
+                let line = lines.replace("\\\n", " ");
                 let _ = self.editor.add_history_entry(line.as_str());
                 Typed::Line(self.number, line)
             }
@@ -173,7 +179,12 @@ impl Hinter for ShellCompletion {
     type Hint = String;
 }
 impl Highlighter for ShellCompletion {}
-impl Validator for ShellCompletion {}
+impl Validator for ShellCompletion {
+    fn validate(&self, typed: &mut ValidationContext<'_>) -> rustyline::Result<ValidationResult> {
+        let is_complete = continued(typed.input()).is_none();
+        Ok(if is_complete { ValidationResult::Valid(None) } else { ValidationResult::Incomplete })
+    }
+}
 impl Helper for ShellCompletion {}
 
 #[cfg(test)]
@@ -191,6 +202,7 @@ mod tests {
         let line = |number, text: &str| Typed::Line(number, text.to_owned());
         assert_eq!(lines(b"a b\r\n\nc"), [line(1, "a b"), line(2, ""), line(3, "c")]);
         assert_eq!(lines(b"set x \\\n 3\nls"), [line(2, "set x   3"), line(3, "ls")]);
+        assert_eq!(lines(b" # a comment \\\nls"), [line(1, " # a comment \\"), line(2, "ls")]);
         assert_eq!(lines(b""), []);
     }
 

@@ -27,7 +27,7 @@ fn a_slow_reader_loses_lines_and_the_robot_does_not_wait() {
         outlet.write_all(&piece(number)).unwrap();
         outlet.flush().unwrap();
     }
-    assert!(outlet.lost);
+    assert!(outlet.shared.queue().lost);
     patience.stop_was_tried(None);
     let reading = std::thread::spawn(move || {
         let mut text = String::new();
@@ -40,6 +40,16 @@ fn a_slow_reader_loses_lines_and_the_robot_does_not_wait() {
     assert_eq!(lines[..2], ["0", "1"]);
     assert_eq!(lines[lines.len() - 2..], ["(lines are missing here: they were not read in time)", "at last"]);
     assert!(text.len() < WAITING + 100_000);
+}
+
+#[test]
+fn text_is_written_although_nobody_flushes_it() {
+    let (mut reader, writer) = pipe().unwrap();
+    let mut outlet = Outlet::open(writer, Keeps::All, &driving()).unwrap();
+    outlet.write_all(b"a turn\n").unwrap();
+    let mut text = [0; 7];
+    reader.read_exact(&mut text).unwrap();
+    assert_eq!(&text, b"a turn\n");
 }
 
 #[test]
