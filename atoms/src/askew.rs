@@ -67,7 +67,7 @@ fn is_near<Y: SonarRing>(y: &Y, range: Meters) -> bool {
 fn runs_off<Y: SonarRing>(y: &Y, diagonal: SonarId, range: Meters, beside: SonarId) -> bool {
     let ring = y.ring_radius().0;
     let angle = |sonar: SonarId, ping: &Ping| off(y, diagonal, sonar, ping).0.abs();
-    let pings = newest(y, beside, |sonar, ping| ping.range.is_some() && angle(sonar, ping) > BESIDE.0);
+    let pings: [_; 2] = newest(y, beside, |sonar, ping| ping.range.is_some() && angle(sonar, ping) > BESIDE.0);
     let is_beyond = |(sonar, ping): (SonarId, &Ping)| {
         let line = (range.0 + ring) / libm::cos(angle(sonar, ping)) - ring;
         ping.range.is_some_and(|heard| heard.0 > line + OF_LINE)

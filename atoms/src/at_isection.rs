@@ -245,6 +245,27 @@ mod tests {
         assert!(fires("1001", &in_turn(ranges)));
     }
 
+    /// Returns the verdicts that nothing is near and that something is near behind, of a robot that turns fast by 73°
+    /// beside a wall behind it, which its sonars 10 and 9 miss; sonar 9 pings `later` nanoseconds after sonar 10.
+    fn behind_a_robot_that_turns(later: u64) -> (bool, bool) {
+        let mut ranges = [9.0; 16];
+        ranges[11] = 0.762;
+        let mut y = in_turn(ranges);
+        let at = Nanos(1_740_000_000);
+        for (sonar, turned, range, at) in [(10, 36.7, 3.05, at), (9, 41.0, 1.75, Nanos(at.0 + later))] {
+            y.pose.theta = Radians::from_degrees(turned);
+            y.ping_at(SonarId::new(sonar), Some(range), at);
+        }
+        y.pose.theta = Radians::from_degrees(73.0);
+        (fires("0000", &y), fires("0010", &y))
+    }
+
+    #[test]
+    fn two_sonars_that_pass_a_direction_in_one_ring_do_not_free_it() {
+        assert_eq!(behind_a_robot_that_turns(60_000_000), BLOCKED);
+        assert_eq!(behind_a_robot_that_turns(960_000_000), FREE);
+    }
+
     #[test]
     fn a_robot_that_turns_goes_by_where_each_sonar_looked() {
         let mut y = in_turn({

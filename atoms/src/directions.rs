@@ -1,7 +1,7 @@
 //! Finds the echoes that a robot's sonars have received from its four directions, whichever sonar faced there.
 
 use mdle_runtime::capability::SonarRing;
-use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};
+use mdle_runtime::{Meters, Nanos, Ping, Radians, SONARS, SonarId};
 
 /// The sonars front, left, back and right, in the order in which the bits are written.
 pub(crate) const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
@@ -13,7 +13,13 @@ const WITHIN: Radians = Radians::from_degrees(14.0);
 /// random errors.
 const SAME: f64 = 0.1;
 
-/// Half the angle of the cone in which a sonar receives echoes of a rough wall.
+/// Time between two pings of different sonars below which both belong to one ring. A Scout's ring takes 0.96 s, and
+/// adjacent sonars follow each other after 0.06 s.
+const ONE_LOOK: Nanos = Nanos(500_000_000);
+/// Minimum angle that a robot has turned since a ping if it turns fast. At 0.36 rad/s, as in the paper's plans, a Scout
+/// turns by 20° while each of its sonars pings.
+const TURNED: Radians = Radians::from_degrees(28.0);
+/// Half the angle of the cone in which a sonar hears a rough wall.
 pub(crate) const CONE: Radians = Radians::from_degrees(12.5);
 /// Maximum distance, in metres, between a wall and the edge of a cone at which the cone is treated as reaching the
 /// wall.
@@ -22,36 +28,54 @@ const OF_WALL: f64 = 0.08;
 /// straight wall; an echo from beyond an opening is further away.
 const SLANT: (f64, f64) = (1.08, 0.02);
 
-/// Returns the minimum range of the two newest pings in the present direction of a sonar; infinite if neither had an
-/// echo.
+/// Returns the minimum range of the newest pings in the present direction of a sonar; infinite if none of them had an
+/// echo. These are two pings, or three if the two were [one look](is_one_look).
 ///
 /// `None` if there were too few pings in that direction: a single ping with a near echo is enough, but a single ping
 /// without a near echo does not make the direction free.
 pub(crate) fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
-    let newest = newest(y, direction, |sonar, ping| !is_of_side(y, direction, sonar, ping));
-    let nearest = nearest(newest);
+    let newest: [_; 3] = newest(y, direction, |sonar, ping| !is_of_side(y, direction, sonar, ping));
+    let [first, second, _] = newest;
+    let is_one_look = first.zip(second).is_some_and(|(one, other)| is_one_look(y, direction, one, other));
+    let confirming = if is_one_look { newest } else { [first, second, second] };
+    let nearest = nearest(confirming);
     match nearest.filter(|range| *range < y.blocked_within()) {
         Some(near) => Some(near),
-        None => newest[1].map(|_| overheard(y, direction).or(nearest).unwrap_or(Meters(f64::INFINITY))),
+        None => confirming[2].map(|_| overheard(y, direction).or(nearest).unwrap_or(Meters(f64::INFINITY))),
     }
 }
 
-/// Returns the two newest pings that are used for the present direction of a sonar.
-pub(crate) fn newest<Y: SonarRing>(
+/// Returns `true` if two pings in a direction are one look: a robot that turns fast has passed the direction with two
+/// adjacent sonars in one ring, and has turned on since. If one of the pings is wrong, the other alone would free the
+/// direction.
+fn is_one_look<Y: SonarRing>(y: &Y, direction: SonarId, one: (SonarId, &Ping), other: (SonarId, &Ping)) -> bool {
+    let is_of_ring = one.1.at.since(other.1.at) < ONE_LOOK;
+    let Radians(turned) = Radians(y.here().theta.0 - one.1.pose.theta.0).wrapped();
+    let is_of_direction = one.0 == direction || other.0 == direction;
+    one.0 != other.0 && !is_of_direction && is_of_ring && turned.abs() > TURNED.0
+}
+
+/// Returns the newest pings that count in the present direction of a sonar, newest first.
+pub(crate) fn newest<Y: SonarRing, const N: usize>(
     y: &Y,
     direction: SonarId,
     counts: impl Fn(SonarId, &Ping) -> bool,
-) -> [Option<(SonarId, &Ping)>; 2] {
-    let mut newest: [Option<(SonarId, &Ping)>; 2] = [None; 2];
+) -> [Option<(SonarId, &Ping)>; N] {
+    let mut newest: [Option<(SonarId, &Ping)>; N] = [None; N];
     for number in 0..SONARS as u8 {
         let sonar = SonarId::new(number);
         let is_there = |ping: &&Ping| looked_there(y, direction, sonar, ping) && counts(sonar, ping);
         for ping in y.pings(sonar).newest_first().filter(is_there) {
-            let [first, second] = newest;
-            if first.is_none_or(|(_, first)| first.at < ping.at) {
-                newest = [Some((sonar, ping)), first];
-            } else if second.is_none_or(|(_, second)| second.at < ping.at) {
-                newest = [first, Some((sonar, ping))];
+            let mut older = (sonar, ping);
+            for place in &mut newest {
+                match place {
+                    Some(known) if known.1.at >= older.1.at => {}
+                    Some(known) => core::mem::swap(known, &mut older),
+                    None => {
+                        *place = Some(older);
+                        break;
+                    }
+                }
             }
         }
     }
@@ -81,7 +105,7 @@ fn is_of_side<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Pi
     let Some(range) = ping.range.filter(|range| *range < y.blocked_within()) else { return false };
     let (Radians(off), here) = (off(y, direction, sonar, ping), y.here());
     let side = after(direction, if off < 0.0 { 12 } else { 4 });
-    let Some(wall) = nearest(newest(y, side, |_, _| true)) else { return false };
+    let Some(wall) = nearest(newest::<_, 2>(y, side, |_, _| true)) else { return false };
     let axis = ping.pose.theta.0 + sonar.bearing().0;
     let transducer = ping.pose.towards(Radians(axis), y.ring_radius());
     let edge = transducer.towards(Radians(axis + libm::copysign(CONE.0, off)), range);
@@ -95,8 +119,8 @@ pub(crate) fn after(sonar: SonarId, further: usize) -> SonarId {
     SonarId::new(((sonar.number() + further) % SONARS) as u8)
 }
 
-/// Returns the smallest range of these pings; `None` if none of them had an echo.
-fn nearest(pings: [Option<(SonarId, &Ping)>; 2]) -> Option<Meters> {
+/// Returns the minimum range of these pings; `None` if none of them had an echo.
+fn nearest<const N: usize>(pings: [Option<(SonarId, &Ping)>; N]) -> Option<Meters> {
     let heard = pings.into_iter().flatten().filter_map(|(_, ping)| ping.range);
     heard.reduce(|one, other| if other < one { other } else { one })
 }

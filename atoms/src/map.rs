@@ -66,8 +66,7 @@ impl Cell {
 }
 
 /// Returns the largest whole number that is at most `number`. The absolute value of `number` is at most [`FURTHEST`].
-/// This function is fast: a ping passes many cells, so `floor` of `libm`, or a conversion that checks for overflow,
-/// would take most of the time of a turn.
+/// `floor` of `libm`, or a conversion that checks for overflow, would take longer.
 fn below(number: f64) -> i32 {
     // In a sum of this size, the last bit of the mantissa counts ones, so the low bits contain the nearest whole
     // number.
@@ -77,7 +76,21 @@ fn below(number: f64) -> i32 {
     sum.to_bits() as i32 - i32::from(sum - ROUNDS > number)
 }
 
-/// A map of the evidence for obstacles around the robot.
+/// Number of binary places of a coordinate on the map, which makes its resolution 0.05 µm.
+const BINARY: u32 = 20;
+
+/// Converts a number of cells, at most a few times those of the map, to a fixed-point number.
+fn fixed(cells: f64) -> i32 {
+    const LIMIT: f64 = 4.0 * CELLS as f64;
+    (cells.clamp(-LIMIT, LIMIT) * f64::from(1 << BINARY)) as i32
+}
+
+/// Returns the largest whole number of cells that is at most the fixed-point number `cells`.
+fn whole(cells: i32) -> i32 {
+    cells >> BINARY
+}
+
+/// Evidence for obstacles around the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Map {
     evidence: [[u8; BYTES]; ROWS],
@@ -131,15 +144,31 @@ impl Map {
     /// `free`.
     fn pass(&mut self, from: Pose, axis: Radians, free: f64) {
         let end = libm::floor(free / CELL).max(0.0) as i32 + 1;
-        // A ping passes many cells. Their indices are limited only once, at the transducer: all cells are near it.
-        let [x, y] = [from.x, from.y].map(|metres| metres.0.clamp(-FURTHEST * CELL / 2.0, FURTHEST * CELL / 2.0));
+        let Cell { x: left, y: low } = self.corner;
+        // A ping passes many cells. In whole numbers, each takes two additions.
+        let [x, y] = [(from.x, left), (from.y, low)].map(|(at, corner)| fixed(at.0 / CELL - f64::from(corner)));
         for (degrees, begin) in RAYS {
             let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
-            let cells = (libm::floor(begin / CELL) as i32..end).map(|step| {
-                let along = f64::from(step) * CELL;
-                Cell { x: below((x + along * cos) / CELL), y: below((y + along * sin) / CELL) }
-            });
-            self.once(cells, |evidence| evidence.saturating_sub(MISS));
+            let (along, up) = (fixed(cos), fixed(sin));
+            let mut last = -1;
+            for step in libm::floor(begin / CELL) as i32..end {
+                let (right, above) = (whole(x + step * along), whole(y + step * up));
+                let number = above * CELLS + right;
+                // A cell that is repeated in succession is changed only once.
+                if is_within(right) && is_within(above) && number != last {
+                    last = number;
+                    self.free(Cell { x: left + right, y: low + above });
+                }
+            }
+        }
+    }
+
+    /// Removes the evidence of a ping that passed a cell of the map.
+    fn free(&mut self, cell: Cell) {
+        let (row, column, shift) = place(cell);
+        if let Some(byte) = self.evidence.get_mut(row).and_then(|row| row.get_mut(column)) {
+            let evidence = *byte >> shift & 15;
+            *byte -= evidence.min(MISS) << shift;
         }
     }
 
@@ -226,8 +255,6 @@ impl Map {
 
     /// Returns `true` if the cell is on the map.
     pub(crate) fn contains(&self, cell: Cell) -> bool {
-        // Converted to unsigned, a negative number becomes large.
-        let is_within = |place: i32| (place as u32) < CELLS as u32;
         is_within(cell.x - self.corner.x) && is_within(cell.y - self.corner.y)
     }
 
@@ -293,6 +320,12 @@ fn square(half: i32) -> impl Iterator<Item = (i32, i32)> {
         let step = if x.abs() == half { 1 } else { 2 * half };
         (-half..=half).step_by(step.max(1) as usize).map(move |y| (x, y))
     })
+}
+
+/// Returns `true` if a number of cells from the corner of the map, along one axis, leads to a cell on the map.
+fn is_within(cells: i32) -> bool {
+    // Converted to unsigned, a negative number becomes large.
+    (cells as u32) < CELLS as u32
 }
 
 /// Returns `true` if this is the evidence of an unknown cell.

@@ -83,6 +83,18 @@ fn a_route_of_two_plans_is_driven() {
     "#);
 }
 
+/// While this Scout turned fast into the hallway, one sonar missed the wall behind and the next one had a range at
+/// random: the plan took the place for the first way on the right, and turned there without end.
+#[test]
+fn a_place_that_a_turning_robot_mishears_is_no_landmark() {
+    let plan = root().join("plans/navigation/office.mdle");
+    let words = ["run", plan.to_str().unwrap(), "--plan", "Lab2ToLab1Plan", "--target", "sim", "--speed", "max"];
+    let start = ["--body", "scout", "--start", "0,0,0", "--start-noise", "10cm,5deg", "--seed", "9954556"];
+    let goal = ["--world", "office", "--timeout", "300", "--goal", "7.45,0.3,0.8,270,180"];
+    let output = run(&folder("navigation_misheard"), &[&words[..], &start, &goal].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+}
+
 /// Returns a folder for a test with the repository's graph and with maps of its landmarks, which a Scout makes once for
 /// all tests.
 fn mapped(test: &str) -> PathBuf {

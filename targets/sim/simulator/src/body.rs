@@ -6,6 +6,8 @@ mod odometry;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
 use crate::footprint::{Contact, Footprint};
@@ -32,7 +34,8 @@ const LOOKS: f64 = 0.6;
 pub(crate) struct Body {
     /// Pose on the floor.
     pub(crate) pose: Pose,
-    drive: Drive,
+    /// Wheels and outline, which all robots with the same body share.
+    drive: Arc<Drive>,
     odometry: Odometry,
     /// The speed of the left wheel, in m/s.
     left: f64,
@@ -54,15 +57,16 @@ enum Obstacle {
 }
 
 impl Body {
-    /// Creates a body at rest at `pose`. Its odometry has the errors of the random seed `seed`; without a seed, it has
-    /// no errors.
-    pub(crate) fn new(drive: Drive, pose: Pose, seed: Option<u64>) -> Self {
-        Self { pose, drive, odometry: Odometry::new(drive.slip, seed), left: 0.0, right: 0.0, clear: 0.0 }
+    /// Returns a body at rest at `pose`, with the odometry errors of `seed`, or without errors.
+    pub(crate) fn new(drive: impl Into<Arc<Drive>>, pose: Pose, seed: Option<u64>) -> Self {
+        let drive = drive.into();
+        let odometry = Odometry::new(drive.slip, seed);
+        Self { pose, drive, odometry, left: 0.0, right: 0.0, clear: 0.0 }
     }
 
     /// Creates another body of the same kind, at rest at `pose`.
     pub(crate) fn another(&self, pose: Pose, seed: Option<u64>) -> Self {
-        Self::new(self.drive, pose, seed)
+        Self::new(Arc::clone(&self.drive), pose, seed)
     }
 
     /// Returns the maximum distance, in metres, that any point of the body moves in a time of `seconds`.

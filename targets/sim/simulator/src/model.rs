@@ -4,7 +4,7 @@ mod figures;
 
 use std::fmt;
 
-use mdle_runtime::{Nanos, Radians, SonarId};
+use mdle_runtime::{Mount, Nanos, Radians, SonarId};
 
 use crate::battery::Pack;
 use crate::footprint::Form;
@@ -162,6 +162,32 @@ pub(crate) struct Transducer {
     pub(crate) bearing: Radians,
     /// Sonar to which the transducer belongs, among the paper's sixteen sonars.
     pub(crate) sonar: SonarId,
+    /// Mount of the transducer relative to its sonar; `None` if it is in the place of its sonar on the ring.
+    pub(crate) mount: Option<Mount>,
+}
+
+impl Transducer {
+    /// Returns a transducer at `x` metres ahead and `y` metres to the left of the centre, on a body whose ring of
+    /// sonars has the radius `ring`.
+    fn at((x, y): (f64, f64), bearing: Radians, sonar: SonarId, ring: f64) -> Self {
+        let is_on_the_ring = bearing == sonar.bearing() && (libm::hypot(x, y) - ring).abs() < 1e-9;
+        let mount = (!is_on_the_ring).then(|| Mount::of(x, y, bearing, sonar));
+        Self { x, y, bearing, sonar, mount }
+    }
+}
+
+impl Hearing {
+    /// Converts a range from the transducer with this number to a range from the ring: measured along the transducer's
+    /// axis from the point nearest to the centre, minus the ring's radius.
+    pub(crate) fn of_ring(&self, range: f64, number: usize) -> f64 {
+        match self.transducers.get(number) {
+            Some(Transducer { x, y, bearing, mount: Some(_), .. }) => {
+                let (sin, cos) = libm::sincos(bearing.0);
+                (x * cos + y * sin + range - self.ring_radius).max(0.0)
+            }
+            Some(Transducer { mount: None, .. }) | None => range,
+        }
+    }
 }
 
 /// Angle between the axis and the edge of a sonar's cone, for sonars without a lobe.

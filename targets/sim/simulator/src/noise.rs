@@ -5,9 +5,22 @@ use std::f64::consts::TAU;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// A stream of random numbers. The seed and the purpose determine it.
+/// Number of random numbers that are drawn at a time: one block of ChaCha.
+const NUMBERS: usize = 8;
+
+/// A stream of random numbers, determined by the seed and the purpose: that of ChaCha with 8 rounds.
+///
+/// A generator of `rand_chacha` holds four blocks and its key, 320 bytes, and a robot needs four of them. In a crowd
+/// they would take as much memory as the sonars' pings.
 #[derive(Debug, Clone)]
-pub(crate) struct Noise(ChaCha8Rng);
+pub(crate) struct Noise {
+    seed: u64,
+    purpose: Purpose,
+    /// Number of random numbers that have been used.
+    used: u64,
+    /// The last random numbers that were drawn.
+    numbers: [u64; NUMBERS],
+}
 
 /// Purpose of random numbers. Each purpose has its own stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,9 +39,26 @@ pub(crate) enum Purpose {
 
 impl Noise {
     pub(crate) fn of(seed: u64, purpose: Purpose) -> Self {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        random.set_stream(purpose as u64);
-        Self(random)
+        Self { seed, purpose, used: 0, numbers: [0; NUMBERS] }
+    }
+
+    /// Returns the next number of the stream.
+    fn next(&mut self) -> u64 {
+        let place = (self.used % NUMBERS as u64) as usize;
+        if place == 0 {
+            self.draw();
+        }
+        self.used += 1;
+        self.numbers[place]
+    }
+
+    /// Draws the numbers that follow those that have been used.
+    fn draw(&mut self) {
+        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        random.set_stream(self.purpose as u64);
+        // A number takes two words of the stream.
+        random.set_word_pos(2 * u128::from(self.used));
+        self.numbers = std::array::from_fn(|_| random.next_u64());
     }
 
     /// Returns a number from the standard normal distribution, by Box and Muller's transform.
@@ -41,6 +71,21 @@ impl Noise {
     /// Returns a number from 0 up to, but not including, 1.
     pub(crate) fn uniform(&mut self) -> f64 {
         // The upper 53 bits, which an f64 can represent exactly.
-        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_those_of_one_generator() {
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        random.set_stream(Purpose::Slip as u64);
+        let mut noise = Noise::of(7, Purpose::Slip);
+        for number in 0..200 {
+            assert_eq!(noise.next(), random.next_u64(), "number {number}");
+        }
     }
 }

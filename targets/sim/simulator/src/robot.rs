@@ -23,8 +23,9 @@ pub struct Simulated {
     walls: Walls,
     body: Body,
     ring: Ring,
-    shape: Shape,
-    /// Drift of the robot's odometry heading, estimated from walls.
+    /// Constants of the body, which all robots with the same body share.
+    shape: Arc<Shape>,
+    /// Drift of the robot's odometry, measured at walls.
     compass: Compass,
     battery: Battery,
     charger: Option<Charger>,
@@ -106,7 +107,7 @@ impl Simulated {
             walls,
             body: Body::new(drive, start, make.seed),
             ring: Ring::new(hearing, make.seed),
-            shape,
+            shape: Arc::new(shape),
             compass: Compass::default(),
             battery: Battery::new(pack, 1.0),
             charger: world.charger,
@@ -128,6 +129,7 @@ impl Simulated {
             walls: self.walls.clone(),
             body: self.body.another(start, seed),
             ring: Ring::new(Arc::clone(&self.ring.hearing), seed),
+            shape: Arc::clone(&self.shape),
             compass: Compass::default(),
             battery: self.battery,
             exchanges: 0,
@@ -209,8 +211,8 @@ impl Simulated {
         self.walls.swap_others(others);
     }
 
-    /// Returns the last ping of each transducer, in the order of the body's model. A real robot's sonar boards provide
-    /// such data, before a driver combines them into sixteen sonars.
+    /// Returns the last ping of each transducer, in the order of the body's model. These are the data of a robot's
+    /// sonar boards, before a driver combines them into sixteen sonars; a body with only sixteen transducers has none.
     #[must_use]
     pub fn heard(&self) -> &[Heard] {
         &self.ring.heard
@@ -294,17 +296,18 @@ impl Simulated {
     pub fn senses(&mut self) -> Sensed {
         let now = self.now();
         self.exchanges = self.exchanges.saturating_add(1);
-        self.compass.take(&self.ring.pings, self.body.odometry(), &self.shape);
+        let pings = self.ring.pings();
+        self.compass.take(&pings, self.body.odometry(), &self.shape);
         Sensed {
             at: now,
             data_age: Nanos::ZERO,
             odometry: self.body.odometry(),
             velocity: self.body.velocity(),
             switches: self.body.pressed(self.switches, &self.walls),
-            pings: self.ring.pings,
+            pings,
             compass: self.compass,
             supply: self.supplied(),
-            shape: self.shape,
+            shape: *self.shape,
             paths: self.paths,
             published: Published::NONE,
         }

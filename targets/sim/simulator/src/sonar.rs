@@ -2,25 +2,28 @@
 //! measurement.
 
 mod echo;
+mod kept;
 #[cfg(test)]
 mod tests;
 
 use std::sync::Arc;
 
-use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, Radians, SONARS};
+use mdle_runtime::{Meters, Nanos, Pings, Pose, Radians, SONARS};
 
 use crate::model::{FiringOrder, Hearing, Transducer};
 use crate::noise::{Noise, Purpose};
 use crate::point::Point;
 use crate::walls::Walls;
+use kept::KeptPings;
 
 /// The sonars and their last pings.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
-    pub(crate) pings: [Pings; SONARS],
+    kept: KeptPings,
     /// Model of the sonars, which all robots with the same body share.
     pub(crate) hearing: Arc<Hearing>,
-    /// Latest ping of each transducer. The range is measured from the transducer itself.
+    /// Latest ping of each transducer, with the range measured from the transducer itself; empty if every sonar has a
+    /// single transducer.
     pub(crate) heard: Vec<Heard>,
     errors: Option<SonarErrors>,
     /// Next group to ping, and the time of its ping; not used if all sonars ping in every turn.
@@ -61,8 +64,13 @@ impl Ring {
             }
         });
         let count = hearing.transducers.len();
-        let heard = vec![Heard::default(); count];
-        Self { pings: [Pings::default(); SONARS], hearing, heard, errors, next: (0, Nanos::ZERO) }
+        let heard = vec![Heard::default(); if count > SONARS { count } else { 0 }];
+        Self { kept: KeptPings::EMPTY, hearing, heard, errors, next: (0, Nanos::ZERO) }
+    }
+
+    /// Returns the last pings of each sonar.
+    pub(crate) fn pings(&self) -> [Pings; SONARS] {
+        self.kept.pings(&self.hearing)
     }
 
     /// Returns the time of the next ping; `None` if all sonars ping in every turn.
@@ -95,11 +103,8 @@ impl Ring {
     /// `odometry`.
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
         let Some(FiringOrder { groups, gap }) = &self.hearing.order else {
-            for number in 0..self.heard.len() {
-                self.listen(number, pose, at, walls);
-            }
-            for (sonar, pings) in (0..).zip(&mut self.pings) {
-                pings.push(nearest(&self.hearing, &self.heard, sonar, at, odometry));
+            for number in 0..self.hearing.transducers.len() {
+                self.transmit(number, pose, odometry, at, walls);
             }
             return;
         };
@@ -108,11 +113,7 @@ impl Ring {
         let count = groups.get(group).map_or(0, Vec::len);
         for place in 0..count {
             let Some(number) = self.grouped(group, place) else { continue };
-            self.listen(number, pose, at, walls);
-            // A sonar with several transducers has pinged when the last of them has pinged.
-            if let Some(sonar) = self.completed(group, number) {
-                self.pings[sonar].push(nearest(&self.hearing, &self.heard, sonar, at, odometry));
-            }
+            self.transmit(number, pose, odometry, at, walls);
         }
     }
 
@@ -131,22 +132,48 @@ impl Ring {
         self.next.1 = self.hearing.order.as_ref().map_or(Nanos::ZERO, |order| order.gap);
     }
 
-    /// Returns the sonar to which this transducer belongs; `None` if another transducer of the same sonar pings later
-    /// in the firing order, or if there is no firing order.
-    fn completed(&self, group: usize, number: usize) -> Option<usize> {
-        let speaks_for =
-            |number: usize| self.hearing.transducers.get(number).map(|transducer| transducer.sonar.number());
-        let sonar = speaks_for(number)?;
-        let order = self.hearing.order.as_ref()?;
-        let here = order.groups.get(group)?.iter().skip_while(|other| **other != number).skip(1);
-        let later = order.groups.iter().skip(group + 1).flatten();
-        here.chain(later).all(|other| speaks_for(*other) != Some(sonar)).then_some(sonar)
+    /// Makes one transducer ping, on a robot at `pose` whose odometry reports `odometry`.
+    fn transmit(&mut self, number: usize, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
+        let range = self.listen(number, pose, walls);
+        if let Some(last) = self.heard.get_mut(number) {
+            *last = Heard { range: range.map(Meters), at };
+        }
+        // A sonar with several transducers has pinged when the last of them has pinged.
+        let Some(sonar) = self.completed(number) else { return };
+        let echo = if self.heard.is_empty() { range.map(|range| (range, number)) } else { self.nearest(sonar) };
+        let echo = echo.map(|(range, number)| (self.hearing.of_ring(range, number), number));
+        self.kept.push(sonar, echo, at, odometry);
     }
 
-    /// Makes one transducer ping.
-    fn listen(&mut self, number: usize, pose: &Pose, at: Nanos, walls: &Walls) {
-        let Self { hearing, errors, heard: all, .. } = self;
-        let (Some(transducer), Some(last)) = (hearing.transducers.get(number), all.get_mut(number)) else { return };
+    /// Returns the sonar to which this transducer belongs; `None` if another transducer of the same sonar pings later
+    /// in the firing order.
+    fn completed(&self, number: usize) -> Option<usize> {
+        let sonar = |number: usize| self.hearing.transducers[number].sonar.number();
+        let own = sonar(number);
+        if self.heard.is_empty() {
+            return Some(own);
+        }
+        let last = match &self.hearing.order {
+            Some(order) => order.groups.iter().flatten().copied().rfind(|other| sonar(*other) == own),
+            None => (0..self.heard.len()).rfind(|other| sonar(*other) == own),
+        };
+        (last == Some(number)).then_some(own)
+    }
+
+    /// Returns the nearest of the last echoes of a sonar's transducers, as the range from the transducer and its
+    /// number; `None` without an echo.
+    fn nearest(&self, sonar: usize) -> Option<(f64, usize)> {
+        let of_sonar = |number: &usize| self.hearing.transducers[*number].sonar.number() == sonar;
+        let heard = (0..self.heard.len()).filter(of_sonar);
+        let echoes = heard.filter_map(|number| self.heard[number].range.map(|range| (range.0, number)));
+        let of_ring = |(range, number): (f64, usize)| self.hearing.of_ring(range, number);
+        echoes.reduce(|one, other| if of_ring(other) < of_ring(one) { other } else { one })
+    }
+
+    /// Makes one transducer ping, and returns the range from it; `None` without an echo.
+    fn listen(&mut self, number: usize, pose: &Pose, walls: &Walls) -> Option<f64> {
+        let Self { hearing, errors, .. } = self;
+        let transducer = &hearing.transducers[number];
         let fade = match errors {
             Some(errors) if hearing.fading > 0.0 => hearing.fading * errors.fading.normal(),
             Some(_) | None => 0.0,
@@ -155,8 +182,7 @@ impl Ring {
         let exact = echo::echo(walls, from, axis, hearing, fade);
         let heard = errors.as_mut().map_or(exact, |errors| errors.of(exact, hearing));
         let heard = heard.map(|range| stepped(range.max(hearing.least), hearing.step));
-        let heard = heard.filter(|range| *range < hearing.most);
-        *last = Heard { range: heard.map(Meters), at };
+        heard.filter(|range| *range < hearing.most)
     }
 }
 
@@ -177,7 +203,7 @@ impl SonarErrors {
 /// Returns the position and the direction of a transducer.
 fn placed(transducer: &Transducer, pose: &Pose, ring_radius: f64) -> (Point, Radians) {
     let axis = Radians(pose.theta.0 + transducer.bearing.0);
-    if is_on_the_ring(transducer, ring_radius) {
+    if transducer.mount.is_none() {
         return (Point::of(&pose.towards(axis, Meters(ring_radius))), axis);
     }
     let (sin, cos) = libm::sincos(pose.theta.0);
@@ -185,40 +211,7 @@ fn placed(transducer: &Transducer, pose: &Pose, ring_radius: f64) -> (Point, Rad
     (Point { x: pose.x.0 + x * cos - y * sin, y: pose.y.0 + x * sin + y * cos }, axis)
 }
 
-fn is_on_the_ring(transducer: &Transducer, ring_radius: f64) -> bool {
-    transducer.bearing == transducer.sonar.bearing()
-        && (libm::hypot(transducer.x, transducer.y) - ring_radius).abs() < 1e-9
-}
-
-/// Converts a range from a transducer to a range from the ring of sonars. The result is measured along the transducer's
-/// axis, from the point of the axis that is nearest to the robot's centre, and is reduced by the ring's radius.
-fn as_of_the_ring(range: f64, transducer: &Transducer, hearing: &Hearing) -> f64 {
-    if is_on_the_ring(transducer, hearing.ring_radius) {
-        return range;
-    }
-    let (sin, cos) = libm::sincos(transducer.bearing.0);
-    (transducer.x * cos + transducer.y * sin + range - hearing.ring_radius).max(0.0)
-}
-
-fn mount(transducer: &Transducer, ring_radius: f64) -> Mount {
-    let Transducer { x, y, bearing, sonar } = *transducer;
-    if is_on_the_ring(transducer, ring_radius) { Mount::default() } else { Mount::of(x, y, bearing, sonar) }
-}
-
 fn stepped(range: f64, step: f64) -> f64 {
     // Prevents rounding errors from reducing a whole number of steps by one.
     if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
-}
-
-/// Returns the ping of this sonar. Its range is the shortest of the last ranges of its transducers, measured from the
-/// ring; `None` if none of them received an echo.
-fn nearest(hearing: &Hearing, heard: &[Heard], sonar: usize, at: Nanos, odometry: Pose) -> Ping {
-    let speaking = hearing.transducers.iter().zip(heard).filter(|(transducer, _)| transducer.sonar.number() == sonar);
-    let heard = speaking.filter_map(|(transducer, last)| {
-        let Meters(range) = last.range?;
-        Some((transducer, as_of_the_ring(range, transducer, hearing)))
-    });
-    let nearest = heard.reduce(|one, other| if other.1 < one.1 { other } else { one });
-    let mount = nearest.map_or(Mount::default(), |(transducer, _)| mount(transducer, hearing.ring_radius));
-    Ping { range: nearest.map(|(_, range)| Meters(range)), at, pose: odometry, mount }
 }

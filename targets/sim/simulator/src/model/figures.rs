@@ -12,12 +12,14 @@ const INCH: f64 = 0.0254;
 const SCOUT_ORDER: [usize; 16] = [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8];
 /// Radius of a Scout's ring of sonars, in metres.
 const RING_RADIUS: f64 = 0.19;
+/// Distance of an ATRV-mini's sonars from its centre, as laws assume it, in metres.
+const ATRV_RING_RADIUS: f64 = 0.28;
 
 pub(super) fn ideal() -> Model {
     let transducers = (0..16).map(|number| {
         let sonar = SonarId::new(number);
         let (sin, cos) = libm::sincos(sonar.bearing().0);
-        Transducer { x: RING_RADIUS * cos, y: RING_RADIUS * sin, bearing: sonar.bearing(), sonar }
+        Transducer::at((RING_RADIUS * cos, RING_RADIUS * sin), sonar.bearing(), sonar, RING_RADIUS)
     });
     Model {
         drive: Drive {
@@ -106,17 +108,13 @@ const ATRV_LEFT: [(f64, f64, f64, u8); 12] = [
 
 pub(super) fn atrv() -> Model {
     let scout = scout();
-    let left = ATRV_LEFT.map(|(x, y, degrees, sonar)| Transducer {
-        x: x / 1000.0,
-        y: y / 1000.0,
-        bearing: Radians::from_degrees(degrees),
-        sonar: SonarId::new(sonar),
+    let left = ATRV_LEFT.map(|(x, y, degrees, sonar)| {
+        let place = (x / 1000.0, y / 1000.0);
+        Transducer::at(place, Radians::from_degrees(degrees), SonarId::new(sonar), ATRV_RING_RADIUS)
     });
-    let right = left.map(|Transducer { x, y, bearing, sonar }| Transducer {
-        x,
-        y: -y,
-        bearing: Radians(-bearing.0),
-        sonar: SonarId::new(16 - sonar.number() as u8),
+    let right = left.map(|Transducer { x, y, bearing, sonar, .. }| {
+        let sonar = SonarId::new(16 - sonar.number() as u8);
+        Transducer::at((x, -y), Radians(-bearing.0), sonar, ATRV_RING_RADIUS)
     });
     Model {
         drive: Drive {
@@ -130,7 +128,7 @@ pub(super) fn atrv() -> Model {
         },
         hearing: Hearing {
             transducers: left.into_iter().chain(right).collect(),
-            ring_radius: 0.28,
+            ring_radius: ATRV_RING_RADIUS,
             // Points heard by the two sonars at 18° from the wall's normal; these sonars are 35 cm apart.
             beside_apart: Some(0.33),
             most: 4.0,

@@ -22,7 +22,7 @@ fn pinged(body: Body, without: &[ModelPart], text: &str) -> Ring {
 }
 
 fn range(ring: &Ring, sonar: u8) -> Option<f64> {
-    ring.pings[SonarId::new(sonar).number()].nearest(1).map(|range| range.0)
+    ring.pings()[SonarId::new(sonar).number()].nearest(1).map(|range| range.0)
 }
 
 /// Returns the range of an ideal sonar that points ahead; `None` without an echo.
@@ -194,7 +194,7 @@ fn a_scout_pings_in_its_order_sixty_milliseconds_apart() {
         assert_eq!(at, Nanos(ping * 60_000_000));
         ring.ping(&Pose::ORIGIN, Pose::ORIGIN, at, &walls);
         let newest = |pings: &Pings| pings.newest_first().next().map(|ping| ping.at);
-        pinged.extend((0..16).filter(|sonar| newest(&ring.pings[*sonar]) == Some(at)));
+        pinged.extend((0..16).filter(|sonar| newest(&ring.pings()[*sonar]) == Some(at)));
     }
     assert_eq!(pinged, [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8, 0]);
 }
@@ -205,12 +205,12 @@ fn sonars_ping_in_the_order_that_is_asked_for() {
     assert_eq!(ring.order().map(|order| order.len()), Some(16));
     ring.reorder(&[4, 0]);
     assert_eq!(ring.order(), Some(vec![4, 0]));
-    let before = ring.pings;
+    let before = ring.pings();
     for _ in 0..4 {
         let at = ring.due().expect("an order");
         ring.ping(&Pose::ORIGIN, Pose::ORIGIN, at, &walls("[[wall]]\npoints = [[-1, 3], [1, 3]]"));
     }
-    let changed: Vec<_> = (0..16).filter(|sonar| ring.pings[*sonar] != before[*sonar]).collect();
+    let changed: Vec<_> = (0..16).filter(|sonar| ring.pings()[*sonar] != before[*sonar]).collect();
     assert_eq!(changed, [0, 4]);
     for body in [Body::Ideal, Body::Atrv] {
         assert_eq!(pinged(body, &[], "[[wall]]\npoints = [[-1, 2], [1, 2]]").order(), None);
@@ -234,7 +234,7 @@ fn a_ping_lies_on_the_axis_of_its_transducer() {
     let around = "[[box]]\nmin = [-1.5, -1.2]\nmax = [1.5, 1.2]";
     let ring = pinged(Body::Atrv, &[], around);
     let mut heard = 0;
-    for (number, pings) in (0..).zip(&ring.pings) {
+    for (number, pings) in (0..).zip(&ring.pings()) {
         let ping = pings.newest_first().next().expect("a ping");
         let Some(Meters(range)) = ping.range else { continue };
         let axis = ping.axis(SonarId::new(number));
