@@ -7,7 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use mdle::RouterSettings;
-use mdle_engine::link::{Draft, Endpoint, LONGEST_LETTER, Outbox};
+use mdle_engine::link::{Endpoint, FrameDraft, LONGEST_LETTER, Outbox};
 use zenoh::pubsub::Publisher;
 use zenoh::qos::{CongestionControl, Priority};
 use zenoh::{Config, Session, Wait as _};
@@ -109,7 +109,7 @@ impl Carrier {
     /// Fails if the session fails.
     fn publish(&mut self, session: &Session) -> zenoh::Result<()> {
         let states = self.states(session)?;
-        let (mut last, mut looked) = (None::<Draft>, None::<Instant>);
+        let (mut last, mut looked) = (None::<FrameDraft>, None::<Instant>);
         while !self.endpoint.is_over() {
             // A receiver accepts letters only from a robot whose state has arrived, so the last state is sent before
             // any letter.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use mdle_engine::link::{Endpoint, LONGEST_LETTER, Source};
+use mdle_engine::link::{Endpoint, FrameSource, LONGEST_LETTER};
 use zenoh::sample::Sample;
 use zenoh::{Session, Wait as _};
 
@@ -33,13 +33,13 @@ struct Intake(Mutex<Counted>);
 
 /// A robot as a source of frames, and the reported reasons for which its messages were refused.
 struct Counted {
-    source: Source,
+    source: FrameSource,
     reasons: BTreeSet<String>,
 }
 
 impl Intake {
     fn new(robot: &str) -> Self {
-        Self(Mutex::new(Counted { source: Source::without_connection(robot), reasons: BTreeSet::new() }))
+        Self(Mutex::new(Counted { source: FrameSource::without_connection(robot), reasons: BTreeSet::new() }))
     }
 
     /// Passes a message to the endpoint, or refuses it. A robot that sends invalid messages cannot be cut off, because

@@ -141,8 +141,12 @@ mod tests {
 
     #[test]
     fn a_missing_topic_names_what_is_there() {
-        let odom =
-            Input { source: TopicPurpose::Odometry, topic: "/odom".to_owned(), kind: "nav_msgs/msg/Odometry", limit: 500 };
+        let odom = Input {
+            source: TopicPurpose::Odometry,
+            topic: "/odom".to_owned(),
+            kind: "nav_msgs/msg/Odometry",
+            limit: 500,
+        };
         let mut graph = Graph::default();
         assert_eq!(graph.about_input(&odom, ""), "nobody publishes `/odom` (nav_msgs/msg/Odometry)");
         assert!(!graph.is_offered(&odom));

@@ -94,14 +94,14 @@ impl PlanState {
 
 #[cfg(test)]
 mod tests {
-    use mdle_host::Around;
+    use mdle_host::EnclosingScope;
     use mdle_runtime::Nanos;
 
     use super::*;
 
     #[test]
     fn the_state_is_text_and_diagnostics() {
-        let around = |name| Around { name, condition: "bumper", since: Nanos(1) };
+        let around = |name| EnclosingScope { name, condition: "bumper", since: Nanos(1) };
         let position = PlanPosition {
             t: Nanos(2_340_000_000),
             state: 3,

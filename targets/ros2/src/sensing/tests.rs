@@ -43,7 +43,10 @@ impl Robot {
     fn scan(&mut self, range: f32) -> Result<(), Fault> {
         let (angle_min, angle_increment, range_max) = (-PI as f32, (PI / 180.0) as f32, 10.0);
         let ranges = vec![range; 360];
-        self.take(TopicPurpose::Scan, &LaserScan { angle_min, angle_increment, range_max, ranges, ..LaserScan::default() })
+        self.take(
+            TopicPurpose::Scan,
+            &LaserScan { angle_min, angle_increment, range_max, ranges, ..LaserScan::default() },
+        )
     }
 
     fn sensed(&self) -> Sensed {
