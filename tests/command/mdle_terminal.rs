@@ -118,8 +118,8 @@ fn a_report_leaves_the_line_alone_that_is_typed() {
     terminal.wait_for(answer, &["/usr/robot > ", "pwd", "/usr/robot", "get /clock/period", "0.1s", "/usr/robot > "]);
     // A command continues on the next line.
     let answer = answer + terminal.shown().get(answer..).map_or(0, str::len);
-    terminal.press("get \\\r/clock/pace\r");
-    terminal.wait_for(answer, &["get \\", "/clock/pace", "\n", "1", "\n", "/usr/robot > "]);
+    terminal.press("get \\\r/clock/period\r");
+    terminal.wait_for(answer, &["get \\", "/clock/period", "\n0.1s", "/usr/robot > "]);
     terminal.press("\x04");
     let (status, shown) = terminal.end();
     assert_eq!(status.code(), Some(0), "{shown}");
