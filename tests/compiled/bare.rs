@@ -14,7 +14,7 @@ use std::sync::LazyLock;
 use mdle_compiler::alphabet::{self, Alphabet};
 use mdle_compiler::diagnostic::{SourceId, Sources};
 use mdle_compiler::rust::{Header, Shape, emit_as};
-use mdle_compiler::trace::{Reports, Script, Tree, run};
+use mdle_compiler::trace::{Reports, Script, TreeWalk, run};
 use mdle_compiler::{Compiled, builtin, compile};
 use mdle_tests::elf::sections;
 use mdle_tests::repository::root;
@@ -229,7 +229,7 @@ fn traced(executable: &str, plan: &str, script: &str) -> String {
         trace += &format!("{}\n", turn[0]);
         turns += &format!("{}  {}\n", turn[0], turn[1]);
     }
-    let expected: String = run(Tree::new(&plan), &script).map(|line| format!("{line}\n")).collect();
+    let expected: String = run(TreeWalk::new(&plan), &script).map(|line| format!("{line}\n")).collect();
     assert_eq!(trace, expected, "{executable}");
     turns
 }

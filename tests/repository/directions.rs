@@ -247,7 +247,7 @@ fn machines_written_from_the_rules_share_no_stepping_with_others() {
             (names_from(&file.text, "crate::fsm"), of_fsm),
             (
                 names_from(&file.text, "super"),
-                &["Applied", "COMPLETED", "Fired", "EntryTime", "Machine", "Reports", "TurnResult"],
+                &["ScriptedInput", "COMPLETED", "Fired", "EntryTime", "Machine", "Reports", "TurnResult"],
             ),
         ];
         for (names, allowed) in used {
@@ -265,7 +265,7 @@ fn the_lowering_is_validated_by_code_of_its_own() {
     let path = "mdlec/compiler/src/fsm/validation.rs";
     let file = files(&[".rs"]).into_iter().find(|file| file.path == path).expect(path);
     // From the lowering it may only use the definition of a machine, and from the runtime that of its tables.
-    assert_eq!(names_from(&file.text, "super"), ["Draft", "RecordPlace", "Sizes"]);
+    assert_eq!(names_from(&file.text, "super"), ["MachineDraft", "RecordPlace", "Sizes"]);
     assert_eq!(names_from(&file.text, "mdle_runtime"), ["fsm", "Here", "Radians"]);
     assert_eq!(names_from(&file.text, "mdle_runtime::fsm"), ["Bracket", "Kind"]);
     assert_eq!(names_from(&file.text, "crate"), ["diagnostic", "plan"]);

@@ -43,7 +43,8 @@ impl ScoutLine {
         self.ask_while(command, deadline, &|| Ok(()))
     }
 
-    /// Sends `command`, and waits for its answer as [`ScoutLine::ask`] does. Stops waiting when `go_on` returns an error.
+    /// Sends `command`, and waits for its answer as [`ScoutLine::ask`] does. Stops waiting when `go_on` returns an
+    /// error.
     ///
     /// # Errors
     /// Fails if [`ScoutLine::ask`] or `go_on` fails.

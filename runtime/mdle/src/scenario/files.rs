@@ -81,7 +81,8 @@ impl ScenarioFiles {
         if self.are_inside { target(Some(SIM)) } else { Settings::beside(path)?.target(Some(SIM)) }
     }
 
-    /// Returns the plan in the file at `path`. After compiling it, the caller passes the result to [`ScenarioFiles::compiled`].
+    /// Returns the plan in the file at `path`. After compiling it, the caller passes the result to
+    /// [`ScenarioFiles::compiled`].
     ///
     /// # Errors
     /// Fails if the file cannot be read or is not text.
