@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use mdle_compiler::rust::{Header, emit, plan_type};
-use mdle_tests::chance::{Chance, repeated};
+use mdle_tests::chance::Chance;
 use mdle_tests::driving_plan::random_plan;
 use mdle_tests::executable::{folder, target};
 use mdle_tests::golden;
@@ -19,7 +19,7 @@ use mdle_tests::repository::{TextFile, root};
 use mdle_tests::run_output::{emulated_run, in_simulator, loaded, simulated_run, warnings};
 
 /// Number of random plans.
-const PLANS: u64 = 5;
+const PLANS: u64 = 300;
 const FILE: &str = "random.mdle";
 const TARGETS: [&str; 3] = ["sim", "scout", "atrv"];
 const BODIES: [&str; 3] = ["ideal", "scout", "atrv"];
@@ -31,7 +31,7 @@ const NUMBER: &str = "RANDOM_PLAN";
 #[test]
 fn random_plans_run_as_their_executables_do() {
     let folder = folder("random");
-    let texts: Vec<_> = (0..repeated(PLANS)).map(|seed| random_plan(&mut Chance::new(seed))).collect();
+    let texts: Vec<_> = (0..PLANS).map(|seed| random_plan(&mut Chance::new(seed))).collect();
     let programs = TARGETS.map(|name| target().join("debug").join(program(name)));
     build(&folder, &texts);
     let next = AtomicUsize::new(0);
