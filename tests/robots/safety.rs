@@ -263,6 +263,21 @@ fn random_plans_keep_the_margin_of_a_slanting_fence() {
     assert!((0.098..0.105).contains(&nearest), "{nearest} m from the edges");
 }
 
+/// A robot that is asked to drive back and to turn at once, while it still rolls towards the edge, has to brake first.
+#[test]
+fn a_robot_that_reverses_at_a_fence_keeps_its_margin() {
+    let rules = read(
+        "[[fence]]\ninside = [[-0.5, -0.5], [2, -0.5], [2, 0.6], [-0.5, 0.5]]\nmargin = \"10cm\"\n\
+                      deceleration = \"50cm/s2\"\n",
+    );
+    let plan = "{ Main (wait 9s) (Atom (wait 2500ms) (go -24 -6deg/s)) (Atom (wait 400ms) (go 10 0)) \
+                (Atom (wait 800ms) (go -47 0)) (Atom (wait 1800ms) (go 46 0)) (Atom (wait 1300ms) (go 88 -93deg/s)) \
+                (Atom (wait 100ms) (go 4 0)) (Atom (wait 1400ms) (go -86 82deg/s)) }";
+    let run = run(plan, &rules.unwrap(), &exact(Body::Atrv), 90);
+    let lowest = run.iter().map(|turned| turned.pose.y.0).fold(f64::INFINITY, f64::min);
+    assert!((-0.402..-0.39).contains(&lowest), "{lowest} m, where -0.5 m is the edge");
+}
+
 /// Returns a random plan that drives straight and in circles at any speed.
 fn random_plan(chance: &mut Chance) -> String {
     let mut plan = String::from("{ Main (wait 60)\n");

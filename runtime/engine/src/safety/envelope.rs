@@ -150,19 +150,20 @@ impl Envelope {
     /// plan's and the robot's current turn rate. A robot that drives along a fence cannot first turn towards the fence
     /// and then brake, and wheels cannot brake while they change the turn rate as fast as possible.
     fn turn_rate_at<Y: Odometry + DiffDrive>(&self, fence: &Fence, asked: f64, y: &Y) -> f64 {
-        let (sent, Twist { v, omega }) = (self.last.v.0, y.velocity());
-        let rolls = if v.0.abs() > sent.abs() { v.0 } else { sent };
-        let fastest = |rate| fence.fastest(&y.pose(), rolls, rate, self.period);
+        let Twist { v, omega } = y.velocity();
+        // A robot that has been sent the opposite direction still rolls in the old one until its wheels have stopped.
+        let speeds = [v.0, self.last.v.0];
+        let can_brake =
+            |rate, brakes| speeds.iter().all(|v| fence.fastest(&y.pose(), *v, rate, self.period) >= v.abs() - brakes);
         let brakes = fence.deceleration * self.period;
-        let asked = if fastest(omega.0) < rolls.abs() {
+        let asked = if can_brake(omega.0, 0.0) {
+            asked
+        } else {
             let change = 2.0 * brakes / y.wheel_base().0;
             omega.0 + within(asked - omega.0, change)
-        } else {
-            asked
         };
-        let rates = (0..RATES).map(|part| asked + (omega.0 - asked) * f64::from(part) / f64::from(RATES));
-        let mut rates = rates.filter(|rate| fastest(*rate) >= rolls.abs() - brakes);
-        rates.next().unwrap_or(omega.0)
+        let mut rates = (0..RATES).map(|part| asked + (omega.0 - asked) * f64::from(part) / f64::from(RATES));
+        rates.find(|rate| can_brake(*rate, brakes)).unwrap_or(omega.0)
     }
 
     /// Returns the intervention of the last [`Envelope::filter`]; `None` if the input was not changed.
