@@ -117,7 +117,7 @@ fn rules() -> (Rules, Conditions<Alphabet>) {
 fn turns_that_allocate(time: Time) -> (Vec<u64>, usize) {
     let terms = RunTerms { time, period: PERIOD, request: StopRequest::default(), microphones: Microphones::default() };
     let (rules, conditions) = rules();
-    let engine = Engine::new(plan(), &library(), &terms).and_then(|engine| engine.under_rules(conditions.reads()));
+    let engine = Engine::new(plan(), &library(), &terms).and_then(|engine| engine.under_rules(conditions.reads(), []));
     let guardian = Guardian::new(rules, &conditions, PERIOD);
     let supervised = Supervised { supervisor: Box::new(guardian), diversions: Box::new(|_| None) };
     let mut helm = Helm::new(engine.expect("an engine"), Some(supervised));

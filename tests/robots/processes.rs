@@ -208,6 +208,8 @@ fn safety_rules_watch_what_modules_publish() {
         "[guards.far]\nwhen = \"range(nose module) > 1m\"\nthen = \"end\"\n\n[stale]\nmodule = \"3s\"\nthen = \"end\"\n",
     );
     write("kind.toml", "[guards.far]\nwhen = \"range(nose module) > 1m\"\nthen = \"end\"\n");
+    write("away.mdle", "{ Away (wait 6s) (Atom (range(nose module) > 1m) (go -20 0)) }\n");
+    write("away.toml", "[contact]\nthen = \"away.mdle\"\n");
     let ears = "ears=exec python3 ears.py";
     let nose = "nose=echo '{\"publishes\": {\"range\": \"deg\"}}'; cat > /dev/null";
     let silent = "nose=echo '{\"publishes\": {\"range\": \"m\"}}'; cat > /dev/null";
@@ -220,6 +222,9 @@ fn safety_rules_watch_what_modules_publish() {
         ("drive.mdle", "nobody.toml", ["--module", ears]),
         ("drive.mdle", "nobody.toml", ["--module", silent]),
         ("drive.mdle", "kind.toml", ["--module", nose]),
+        ("drive.mdle", "away.toml", ["--module", ears]),
+        ("drive.mdle", "away.toml", ["--module", nose]),
+        ("drive.mdle", "away.toml", ["--module", silent]),
     ];
     let reports = runs.map(|(plan, rules, options)| {
         let mut command = Command::new(mdle());

@@ -184,6 +184,11 @@ impl<A: Alphabet> Guarded<A> {
         self.conditions.reads()
     }
 
+    /// Returns the plans that rules start.
+    pub(crate) fn diversions(&self) -> impl Iterator<Item = load::LoadedPlan<A>> {
+        self.diversions.iter().map(Loaded::plan)
+    }
+
     /// Returns the plan with this number among the plans that rules start; `None` if there is no such plan.
     pub(crate) fn diversion(&self, number: usize) -> Option<load::LoadedPlan<A>> {
         self.diversions.get(number).map(Loaded::plan)

@@ -197,7 +197,7 @@ impl<T, A: EngineAlphabet<Output = Sensed>> PlanFor<T, A> {
             None => engine,
         };
         match &self.safety {
-            Some(safety) => engine.under_rules(safety.reads()),
+            Some(safety) => engine.under_rules(safety.reads(), safety.diversions()),
             None => Ok(engine),
         }
     }

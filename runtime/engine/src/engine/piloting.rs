@@ -7,7 +7,7 @@ use std::time::Duration;
 use mdle_compiler::load::LoadedPlan;
 use mdle_host::{RunTerms, Time, claim_for_worker};
 use mdle_record::RecordedChange;
-use mdle_runtime::{ModuleRead, Nanos};
+use mdle_runtime::{ModuleRead, Nanos, Plan as _};
 
 use super::loading::{Loading, NewModule};
 use super::modules::{Modules, Service};
@@ -91,12 +91,22 @@ impl<A: EngineAlphabet> Engine<A> {
     }
 
     /// Prepares the engine for safety rules that read the module attributes `reads`; from now on, outputs contain these
-    /// attributes.
+    /// attributes. `diversions` are the plans that the rules start.
     ///
     /// # Errors
-    /// Fails if no module publishes one of the attributes, or if an attribute has another kind (exit status 2).
-    pub fn under_rules(self, reads: &'static [ModuleRead]) -> Result<Self, mdle_host::Refusal> {
-        reads::check(reads, self.modules.board()).map_err(mdle_host::Refusal::Usage)?;
+    /// Fails if no module publishes one of the attributes, or an attribute that one of the plans reads, or if an
+    /// attribute has another kind (exit status 2).
+    pub fn under_rules(
+        self,
+        reads: &'static [ModuleRead],
+        diversions: impl IntoIterator<Item = LoadedPlan<A>>,
+    ) -> Result<Self, mdle_host::Refusal> {
+        let board = self.modules.board();
+        reads::check("a safety rule", reads, board).map_err(mdle_host::Refusal::Usage)?;
+        for plan in diversions {
+            let reader = format!("the plan {} of a safety rule", plan.name(0));
+            reads::check(&reader, plan.reads(), board).map_err(mdle_host::Refusal::Usage)?;
+        }
         let mut engine = Self { rules_read: Some(reads), ..self };
         engine.read_modules();
         engine.modules.prepare();

@@ -107,18 +107,19 @@ pub(crate) fn check_kinds<'r>(reads: impl IntoIterator<Item = &'r ModuleRead>, b
     })
 }
 
-/// Checks that modules publish the attributes that safety rules read, with the kinds that the rules expect.
+/// Checks that modules publish the attributes that safety rules or their plans read, with the kinds that these expect.
+/// `reader` is the subject of the error message, such as `a safety rule`.
 ///
 /// # Errors
 /// Fails with a sentence if an attribute is not published, or has another kind.
-pub(crate) fn check(reads: &[ModuleRead], board: &Board) -> Result<(), String> {
+pub(crate) fn check(reader: &str, reads: &[ModuleRead], board: &Board) -> Result<(), String> {
     let check = |read: &ModuleRead| match board.post(read.module, read.attribute) {
-        Some(post) => check_kind(read, post).map_err(|sentence| format!("a safety rule {sentence}")),
+        Some(post) => check_kind(read, post).map_err(|sentence| format!("{reader} {sentence}")),
         None if board.place_of(read).is_some() => Ok(()),
         None => {
             let name = AttributeName::new(read.module, read.attribute);
             let there_are = publishers(read, board);
-            Err(format!("a safety rule reads {name}, which no module publishes{there_are}"))
+            Err(format!("{reader} reads {name}, which no module publishes{there_are}"))
         }
     };
     reads.iter().try_for_each(check)
