@@ -35,6 +35,8 @@ use stored::Store;
 pub use stored::{MOST_STORED, PlanFacts, StoredPlan};
 pub(crate) use turns::PlanTurn;
 
+use crate::board::Board;
+
 /// Default duration of a new plan's trial; [`Plans::set_trial`] sets another.
 pub const TRIAL: Nanos = Nanos(3_000_000_000);
 
@@ -184,6 +186,12 @@ impl<A: EngineAlphabet> Plans<A> {
     #[must_use]
     pub fn armed(&self) -> Option<(&str, When)> {
         self.armed.as_ref().map(|(plan, when)| (&*plan.name, *when))
+    }
+
+    /// Returns the end of a sentence about the armed plan: the module attributes for which it waits before it can begin.
+    /// Empty if it does not wait.
+    pub(crate) fn awaited(&self, board: &Board, now: Nanos) -> String {
+        self.armed.as_ref().map_or_else(String::new, |(plan, _)| reads::awaited(plan.reads, board, now))
     }
 
     /// Returns the reason why the plan of this request must not take over now; `None` if it may take over. Only plans

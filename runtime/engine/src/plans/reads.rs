@@ -49,20 +49,38 @@ pub(super) fn patience(missing: &[&ModuleRead], board: &Board) -> Nanos {
 /// Returns the error message about attributes that a plan reads and that were not published in time.
 pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
     let seconds = patience(missing, board).seconds();
-    let is_other = |read: &&&ModuleRead| read.attribute != AGE || others(read.module, missing).next().is_none();
-    let missing: Vec<_> = missing.iter().filter(is_other).collect();
-    let paths: Vec<_> =
-        missing.iter().map(|read| AttributeName::new(read.module, read.attribute).to_string()).collect();
-    let paths = paths.join(" and ");
+    let paths = paths(missing);
     if missing.iter().all(|read| board.place_of(read).is_some()) {
         return format!(
             "the plan reads {paths}, which no module has published within {seconds} s\nhelp: a module in the \
-             background that needs longer declares its `latency`, and the plan waits 2 s longer than that"
+             background that needs longer declares its `latency`, and the plan waits 2 s longer than that; what a \
+             module publishes only while the robot moves is for a plan that takes over later"
         );
     }
     let absent = missing.iter().find(|read| board.place_of(read).is_none());
     let there_are = absent.map_or_else(String::new, |read| publishers(read, board));
     format!("the plan reads {paths}, which no module has published within {seconds} s{there_are}")
+}
+
+/// Returns the paths of the attributes `missing` as a list for a sentence. The age of a module is left out if another
+/// attribute of the module is listed.
+fn paths(missing: &[&ModuleRead]) -> String {
+    let is_other = |read: &&&ModuleRead| read.attribute != AGE || others(read.module, missing).next().is_none();
+    let missing = missing.iter().filter(is_other);
+    let paths: Vec<_> = missing.map(|read| AttributeName::new(read.module, read.attribute).to_string()).collect();
+    paths.join(" and ")
+}
+
+/// Returns the end of a sentence about a plan that is about to take over: the attributes for which the plan waits, and
+/// the modules of these attributes that are not loaded. Empty if all attributes in `reads` have been published.
+pub(super) fn awaited(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> String {
+    let Err(Unready::Missing(missing)) = published(reads, board, now) else { return String::new() };
+    let mut absent: Vec<_> = missing.iter().filter(|read| board.of(read.module).next().is_none()).collect();
+    absent.dedup_by_key(|read| read.module);
+    let absent: String = absent.iter().map(|read| format!("; no module `{}` is loaded", read.module)).collect();
+    let paths = paths(&missing);
+    let verb = if paths.contains(" and ") { "are" } else { "is" };
+    format!(", once {paths} {verb} published{absent}")
 }
 
 /// Returns the end of a sentence about an attribute that does not exist. It lists the attributes of the module. If the

@@ -71,10 +71,11 @@ impl PlansPart {
 
     /// Answers the requests that the engine has decided. Returns messages about plans whose requests were already
     /// answered.
-    pub(super) fn answer<A: EngineAlphabet>(&mut self, plans: &mut Plans<A>) -> Vec<String> {
+    pub(super) fn answer<A: EngineAlphabet>(&mut self, pilot: &mut Engine<A>, now: Nanos) -> Vec<String> {
         let mut messages = Vec::new();
         let mut replaced = Vec::new();
-        let events: Vec<_> = plans.take_events().collect();
+        let events: Vec<_> = pilot.plans_mut().take_events().collect();
+        let plans = pilot.plans();
         for event in events {
             match event {
                 PlanEvent::Warned(ticket, warnings) => {
@@ -95,7 +96,8 @@ impl PlansPart {
                     let armed = plans.name_of(ticket).zip(plans.armed()).filter(|_| is_own);
                     let Some((name, (_, when))) = armed else { continue };
                     let replaced = replaced.pop().map_or_else(String::new, |(_, old)| format!(", in place of {old}"));
-                    self.settle(ticket, Ok(format!("{name} takes over {when}{replaced}")));
+                    let awaited = plans.awaited(pilot.modules().board(), now);
+                    self.settle(ticket, Ok(format!("{name} takes over {when}{replaced}{awaited}")));
                     self.armed.push((ticket, name.to_owned()));
                 }
                 PlanEvent::Replaced(ticket, name) => {

@@ -143,7 +143,7 @@ where
             Some(time) => desk.wait(&mut parts.all(), moment, time),
             None => desk.serve(&mut parts.all(), moment),
         };
-        parts.proceed(moment.pilot, has_changed);
+        parts.proceed(moment.pilot, moment.t, has_changed);
         if wait.is_none() && moment.is_over {
             desk.close(&parts.all(), moment, moment.t);
         } else {
@@ -163,12 +163,12 @@ where
     }
 
     /// Continues requests that take longer than a turn break, and answers requests whose result is known.
-    fn proceed(&mut self, pilot: &mut Engine<A>, has_changed: bool) {
+    fn proceed(&mut self, pilot: &mut Engine<A>, now: Nanos, has_changed: bool) {
         if has_changed || self.plans.waits() || self.modules.waits() {
             let loaded = pilot.progress();
             loaded.into_iter().for_each(|(number, result)| self.modules.answer(number, result));
         }
         self.recorder.proceed().into_iter().for_each(|message| pilot.tell(message));
-        self.plans.answer(pilot.plans_mut()).into_iter().for_each(|message| pilot.tell(message));
+        self.plans.answer(pilot, now).into_iter().for_each(|message| pilot.tell(message));
     }
 }
