@@ -5,6 +5,9 @@ use std::sync::Arc;
 
 use crate::attribute::{AttributeName, Value};
 
+/// Reason why a registered module is given up.
+pub(super) const UNENDED: &str = "it has not ended its turn";
+
 /// An event at a turn break.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Event {
@@ -37,7 +40,7 @@ impl fmt::Display for Event {
             Self::Stopped(name) => write!(f, "module `{name}` is stopped"),
             Self::Failed(name, sentence) => write!(f, "module `{name}` makes no further turn: {sentence}"),
             Self::Late(name) => write!(f, "module `{name}` is late: the turn ended without it"),
-            Self::GivenUp(name) => write!(f, "module `{name}` is given up: it has not ended its turn"),
+            Self::GivenUp(name) => write!(f, "module `{name}` is given up: {UNENDED}"),
             Self::Ended(name) => write!(f, "module `{name}` has ended"),
             Self::NotANumber(name) => write!(f, "{name} was NaN, which is not published"),
         }

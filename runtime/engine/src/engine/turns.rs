@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use mdle_runtime::{ModuleRead, Nanos};
 
-use super::event::{Arrivals, End, Event};
+use super::event::{Arrivals, End, Event, UNENDED};
 use super::loaded::{LoadedModule, ModuleCode, ModuleState};
 use super::modules::{Modules, Service};
 use super::relevance::relevant;
@@ -146,6 +146,9 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
                 // A module that is late repeatedly is reported once, and its late turns are counted.
                 let is_new = |event: &Event| *late_turns == 1 || !matches!(event, Event::Late(_));
                 events.extend(state.is_late(name, *turn).filter(is_new));
+                if *state == ModuleState::GivenUp {
+                    UNENDED.clone_into(fault);
+                }
             }
             TurnProgress::Done | TurnProgress::Queued | TurnProgress::Running | TurnProgress::Skipped => {}
         }

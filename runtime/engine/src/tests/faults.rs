@@ -188,6 +188,7 @@ fn a_module_that_never_returns_costs_one_turn() {
     turn 13: module `second` is given up: it has not ended its turn
     ");
     assert_eq!(over, [3]);
+    assert_eq!(["first", "well"].map(|name| modules.fault(name)), ["it has not ended its turn", ""]);
     // In the turn in which both workers hang, no worker runs the other modules.
     let turns = |name| modules.board().post(name, "turns").unwrap().reading.clone().unwrap().value.number();
     assert_eq!(["first", "well", "fine"].map(turns), [Some(3.0), Some(39.0), Some(39.0)]);
