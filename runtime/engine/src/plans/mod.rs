@@ -188,7 +188,7 @@ impl<A: EngineAlphabet> Plans<A> {
         self.armed.as_ref().map(|(plan, when)| (&*plan.name, *when))
     }
 
-    /// Returns the end of a sentence about the armed plan: the module attributes for which it waits before it can begin.
+    /// Returns the end of a sentence about the armed plan: the module attributes that it needs before it can begin.
     /// Empty if it does not wait.
     pub(crate) fn awaited(&self, board: &Board, now: Nanos) -> String {
         self.armed.as_ref().map_or_else(String::new, |(plan, _)| reads::awaited(plan.reads, board, now))
