@@ -99,7 +99,9 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call)
         );
     let command = views::view_options(command);
     let command = match call.several_words() {
-        Some(words) => required::argument(command).bin_name(words),
+        Some(words) if program.version.is_empty() => required::argument(command).bin_name(words),
+        // The words are those of `mdle run`, whose plan is inside this executable.
+        Some(_) => required::argument(command).bin_name(program.plan),
         None => required::argument(command),
     };
     let command = if program.version.is_empty() { command } else { command.version(program.version.to_owned()) };

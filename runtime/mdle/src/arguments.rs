@@ -103,6 +103,13 @@ pub(crate) struct RunArguments {
     pub(crate) session: Option<SessionOptions>,
 }
 
+impl RunArguments {
+    /// Returns `true` if the options of the run request help or the version instead of a run.
+    pub(crate) fn asks(&self) -> bool {
+        self.options.iter().any(|option| HELP.iter().chain(&VERSION).any(|asked| option == asked))
+    }
+}
+
 /// The options of a session.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct SessionOptions {
@@ -140,6 +147,8 @@ const WITH_VALUE: [&str; 15] = [
 const OF_ROUTES: [&str; 2] = ["--landmarks", "--target"];
 /// Options that request help.
 const HELP: [&str; 2] = ["-h", "--help"];
+/// Options that request the version of an executable.
+const VERSION: [&str; 2] = ["-V", "--version"];
 /// Options that `mdle` itself parses and that have no value.
 const FLAGS: [&str; 4] = ["--deny-warnings", "-e", "-x", "--paused"];
 
@@ -260,6 +269,16 @@ fn apart(arguments: Vec<OsString>, mut missing: usize) -> Result<(Vec<OsString>,
         }
     }
     Ok((own, options))
+}
+
+/// Returns the help text about the options of the engine, for an executable that contains a plan and the engine; `None`
+/// if the options of the run do not request help.
+pub(crate) fn help_of_executables(options: &[OsString]) -> Option<String> {
+    let asks = options.iter().any(|option| HELP.iter().any(|help| option == help));
+    let hidden = ["file", "target", "plan", "deny-warnings"];
+    let command = hidden.into_iter().fold(run(), |command, name| command.mut_arg(name, |arg| arg.hide(true)));
+    let command = command.disable_help_flag(true).help_template("Options of the engine:\n{options}\n\n");
+    asks.then(|| command.clone().render_help().to_string())
 }
 
 /// Returns the definition of the command-line interface of `mdle`.

@@ -1,15 +1,17 @@
 //! The program `mdle`: compiles a plan, loads it, and runs it together with modules. Apart from the modules, it does
 //! the same as an executable of `mdlec`.
 //!
-//! A program with additional modules calls [`main_with`]; mdlec builds the executables of scenarios with
-//! [`scenario_files`] and [`run_scenario`].
+//! A program with additional modules calls [`main_with`]. mdlec builds the executables of scenarios with
+//! [`scenario_files`] and [`run_scenario`], and executables that contain the engine with [`run_plan`].
 #![forbid(unsafe_code)]
 
 mod arguments;
 mod elements_named;
+mod embedded_plan;
 mod evidence;
 mod examined;
 mod failure;
+mod input_files;
 mod link;
 mod link_addresses;
 mod link_text;
@@ -46,6 +48,7 @@ mod why;
 use std::process::ExitCode;
 
 use arguments::ParsedCommand;
+pub use embedded_plan::{engine_targets, run_plan};
 use failure::Failure;
 pub use link::{OpenRouter, RouterSettings};
 pub use mdle_engine as engine;

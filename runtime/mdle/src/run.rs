@@ -6,13 +6,14 @@ use std::sync::Arc;
 
 use mdle_compiler::diagnostic::judged;
 use mdle_engine::Library;
-use mdle_files::{Input, InputError, KnownSettings, SafetyEntry, Settings, Target, read_plan};
+use mdle_files::{Input, InputError, KnownSettings, SafetyEntry, Settings, Target};
 use mdle_host::{Call, Program, RecordedPlan};
 use mdle_runtime::Sensed;
 
 use crate::arguments::{MapOption, RunArguments};
 use crate::evidence::{MapFiles, pose};
 use crate::failure::{self, Failure};
+use crate::input_files::InputFiles;
 use crate::link::{LinkFile, OpenRouter};
 use crate::modules::{self, AudioSource, HEADING, MapRun, Saved, SoundInput};
 use crate::plans::{self, texts};
@@ -37,7 +38,23 @@ pub(crate) fn run(
     if scenario::is_scenario(&arguments.file) {
         return scenario::run(&arguments, library);
     }
-    let settings = Settings::beside(&arguments.file)?;
+    let files = InputFiles::of_system(&arguments.file);
+    run_files(arguments, &files, "", library, open_router)
+}
+
+/// Runs the plan in these files, as [`run`] does. `version` is the version text of the executable that contains the
+/// files; empty for files on the disk.
+///
+/// # Errors
+/// Fails if the plan cannot be run.
+pub(crate) fn run_files(
+    arguments: RunArguments,
+    files: &InputFiles,
+    version: &str,
+    library: &mut Library<Sensed>,
+    open_router: Option<OpenRouter>,
+) -> Result<ExitCode, Failure> {
+    let settings = files.settings(&arguments.file)?;
     let map = arguments.map.as_ref().map(map_run).transpose()?;
     if let Some(map) = &map {
         map.register(library);
@@ -48,21 +65,25 @@ pub(crate) fn run(
     let target = Arc::new(settings.target(arguments.target.as_deref())?);
     let safety = safety_file(&arguments, &settings)?;
     let link = arguments.link.as_deref().map(|link| LinkFile::read(link, open_router)).transpose()?;
-    let mut input = read_plan(&arguments.file, &target)?;
+    let mut input = files.plan(&arguments.file, &target)?;
     let named = arguments.plan.as_deref();
     let group = link.as_ref().and_then(|link| Some((link, input.group(named)?)));
     let part = group.map(|(link, group)| link.part(&group)).transpose()?;
     let wanted = part.as_deref().or(named);
-    let (plan, mut ready) = compiled(&arguments, wanted, &linked, &target, &mut input, safety.as_ref())?;
+    let run = PlanRun { arguments: &arguments, files, linked: &linked, target: &target, safety: safety.as_ref() };
+    let (plan, mut ready) = run.compiled(wanted, &mut input)?;
     if ready.reads(HEADING) && arguments.lacks_heading(library) {
         let help = "`--ears robot` loads one that hears sounds, and `--point X,Y` one that knows a point";
         failure::warning(&format!("the plan reads the module `{HEADING}`, and none is loaded\nhelp: {help}"));
     }
     ready.hears(arguments.hearing()?);
     let linked_by = link.as_ref().map(|link| link.path().to_owned());
-    ready.link(link)?;
+    // Who asks for help or for the version needs no link.
+    if !arguments.asks() {
+        ready.link(link)?;
+    }
     ready.records(arguments.records.as_deref())?;
-    let program = Program { plan: &plan, version: "" };
+    let program = Program { plan: &plan, version };
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
     for option in settings.run_options(arguments.target.as_deref(), &given, |_| KnownSettings::default())? {
@@ -86,7 +107,7 @@ pub(crate) fn run(
     drop(input);
     let call = Call { words: arguments.words, options, read, recorded, later_path: arguments.records };
     let status = match &arguments.session {
-        None => ready.run(&plan, call, library),
+        None => ready.run(program, call, library),
         Some(session) => session::held(session, &arguments.file, |seat| ready.session(&plan, call, library, seat))?,
     };
     Ok(map.map_or(status, |map| saved(&map, status)))
@@ -172,31 +193,35 @@ fn beside(arguments: &RunArguments, ready: &dyn ReadyPlan) -> String {
     parts.into_iter().filter_map(|(is_there, words)| is_there.then_some(words)).collect::<Vec<_>>().join(" and ")
 }
 
-/// Compiles and loads the plan `wanted`; without a name, the only plan. Returns the name of the plan, and the loaded
-/// plan. Messages go to standard error.
-fn compiled(
-    arguments: &RunArguments,
-    wanted: Option<&str>,
-    linked: &LinkedTarget,
-    target: &Arc<Target>,
-    input: &mut Input,
-    safety: Option<&SafetyFile>,
-) -> Result<(String, Box<dyn ReadyPlan>), Failure> {
-    if let Some(name) = wanted {
-        input.must_have(name)?;
+/// What a plan is compiled and loaded for.
+struct PlanRun<'r> {
+    arguments: &'r RunArguments,
+    files: &'r InputFiles,
+    linked: &'r LinkedTarget,
+    target: &'r Arc<Target>,
+    safety: Option<&'r SafetyFile>,
+}
+
+impl PlanRun<'_> {
+    /// Compiles and loads the plan `wanted`; without a name, the only plan. Returns the name of the plan, and the loaded
+    /// plan. Messages go to standard error.
+    fn compiled(&self, wanted: Option<&str>, input: &mut Input) -> Result<(String, Box<dyn ReadyPlan>), Failure> {
+        if let Some(name) = wanted {
+            input.must_have(name)?;
+        }
+        let (compiled, diagnostics) = input.compile(&self.target.alphabet, wanted);
+        self.files.compiled(input, &diagnostics);
+        if let Err(sentence) = judged(&diagnostics, self.arguments.deny_warnings) {
+            failure::error(&sentence);
+            return Err(Failure::Plan);
+        }
+        let named = compiled.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
+        let named = named.map(|(name, machine)| (name.clone(), (name, machine)));
+        let (name, machine) = input.only(named.collect())?;
+        let mut ready = (self.linked.load)(&machine, input, self.target, self.safety)?;
+        if self.arguments.session.is_some() {
+            ready.describe(plans::facts(&machine, &plans::rendered(&input.sources, &diagnostics)));
+        }
+        Ok((name, ready))
     }
-    let (compiled, diagnostics) = input.compile(&target.alphabet, wanted);
-    failure::print(&input.sources, &diagnostics);
-    if let Err(sentence) = judged(&diagnostics, arguments.deny_warnings) {
-        failure::error(&sentence);
-        return Err(Failure::Plan);
-    }
-    let named = compiled.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
-    let named = named.map(|(name, machine)| (name.clone(), (name, machine)));
-    let (name, machine) = input.only(named.collect())?;
-    let mut ready = (linked.load)(&machine, input, target, safety)?;
-    if arguments.session.is_some() {
-        ready.describe(plans::facts(&machine, &plans::rendered(&input.sources, &diagnostics)));
-    }
-    Ok((name, ready))
 }

@@ -82,8 +82,8 @@ pub(crate) trait ReadyPlan {
     /// Sets the facts about the plan, which a session shows.
     fn describe(&mut self, facts: PlanFacts);
 
-    /// Runs the plan with the modules in `library`; `name` is the name of the plan.
-    fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
+    /// Runs the plan with the modules in `library`.
+    fn run(&self, program: Program<'_>, call: Call, library: &Library<Sensed>) -> ExitCode;
 
     /// Runs the plan in a session, with the modules in `library`; `name` is the name of the plan.
     fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: SessionInputs) -> ExitCode;
@@ -96,6 +96,11 @@ const LINKED: [LinkedTarget; 3] = [
     LinkedTarget::new::<mdle_sim::Target, mdle_sim::alphabet::Alphabet>(),
 ];
 
+/// Returns the names of the robots whose drivers are part of this program.
+pub(crate) fn names() -> [&'static str; 3] {
+    LINKED.map(|linked| linked.name)
+}
+
 /// Returns the robot with the name `name`.
 ///
 /// # Errors
@@ -104,7 +109,7 @@ pub(crate) fn linked(name: &str) -> Result<LinkedTarget, String> {
     if let Some(linked) = LINKED.iter().find(|linked| linked.name == name) {
         return Ok(*linked);
     }
-    let known = LINKED.map(|linked| linked.name);
+    let known = names();
     Err(format!(
         "`mdle` has no target `{name}`{}\nhelp: its targets are {}; `mdlec run` builds the executable of a plan for \
          `ros2`, or for a target of your own",
@@ -119,7 +124,7 @@ pub(crate) fn linked(name: &str) -> Result<LinkedTarget, String> {
 /// Fails if this program has no such robot.
 pub(crate) fn of_record(begin: &Begin, log: &Path) -> Result<LinkedTarget, Failure> {
     LINKED.iter().find(|linked| linked.name == begin.target).copied().ok_or_else(|| {
-        let (log, target, known) = (log.display(), &begin.target, LINKED.map(|linked| linked.name).join(", "));
+        let (log, target, known) = (log.display(), &begin.target, names().join(", "));
         Failure::Usage(format!(
             "the record {log} is of the robot `{target}`, whose plans `mdle` cannot run: its robots are {known}\n\
              help: `mdle log info {log}` and `mdle log export --csv {log}` read the record of any robot"
@@ -251,14 +256,16 @@ where
         self.facts = facts;
     }
 
-    fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
+    fn run(&self, program: Program<'_>, call: Call, library: &Library<Sensed>) -> ExitCode {
         let plan = || self.loaded.plan();
-        let engine = |terms: &RunTerms| self.loading(name, library, terms, false);
-        let Some(safety) = &self.safety else { return mdle_host::run_piloted::<T, _>(name, call, &plan, engine, None) };
+        let engine = |terms: &RunTerms| self.loading(program.plan, library, terms, false);
+        let Some(safety) = &self.safety else {
+            return mdle_host::run_piloted::<T, _>(program, call, &plan, engine, None);
+        };
         let supervisor = |terms: &RunTerms| Box::new(safety.guardian(terms.period)) as _;
         let diversions = |number| safety.diversion(number);
         let supervision = Supervision { supervisor: &supervisor, diversions: &diversions, session: None };
-        mdle_host::run_piloted::<T, _>(name, call, &plan, engine, Some(supervision))
+        mdle_host::run_piloted::<T, _>(program, call, &plan, engine, Some(supervision))
     }
 
     fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: SessionInputs) -> ExitCode {

@@ -10,10 +10,10 @@ use mdle_engine::Library;
 use mdle_host::Program;
 
 use super::arguments::ScenarioOptions;
-use super::files::ScenarioFiles;
 use super::{ReadyPlan, run_with};
 use crate::arguments::{ParsedCommand, parse};
 use crate::failure::Failure;
+use crate::input_files::InputFiles;
 use crate::modules;
 
 /// Returns the names and contents of all files that the scenario at `path` reads; the scenario's own file comes first.
@@ -26,12 +26,12 @@ pub fn scenario_files(path: &Path) -> Result<Vec<(String, Vec<u8>)>, u8> {
 }
 
 fn read(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
-    let files = ScenarioFiles::of_system(path);
+    let files = InputFiles::of_system(path);
     ReadyPlan::read(&files, &ScenarioOptions::default())?;
     let contents = files.into_contents();
     // Checks that the scenario can be read from the copies alone, which are looked up by name, without resolving links
     // and folders.
-    ReadyPlan::read(&ScenarioFiles::inside(path, contents.clone()), &ScenarioOptions::default())?;
+    ReadyPlan::read(&InputFiles::inside(path, contents.clone()), &ScenarioOptions::default())?;
     let is_other = |(file, _): &(PathBuf, _)| file != path;
     let (mut others, mut own): (Vec<_>, Vec<_>) = contents.into_iter().partition(is_other);
     own.append(&mut others);
@@ -61,5 +61,5 @@ fn run(program: Program<'_>, files: &[(&str, &[u8])]) -> Result<ExitCode, Failur
     let contents: BTreeMap<_, _> = files.iter().map(|(file, bytes)| (PathBuf::from(file), bytes.to_vec())).collect();
     let mut library = Library::new();
     modules::shipped(&mut library);
-    run_with(&options, &ScenarioFiles::inside(Path::new(path), contents), &library)
+    run_with(&options, &InputFiles::inside(Path::new(path), contents), &library)
 }

@@ -6,7 +6,6 @@ mod arguments;
 mod crowd;
 mod embedded;
 mod file;
-mod files;
 mod fleet;
 mod member;
 mod output;
@@ -26,11 +25,11 @@ use mdle_runtime::{Printable, Sensed};
 
 use crate::arguments::RunArguments;
 use crate::failure::{self, Failure};
+use crate::input_files::InputFiles;
 use arguments::ScenarioOptions;
 use crowd::CrowdSetup;
 pub use embedded::{run_scenario, scenario_files};
 use file::ScenarioError;
-use files::ScenarioFiles;
 use fleet::Fleet;
 use output::ScenarioOutput;
 use setup::{Scenario, SetupError};
@@ -50,11 +49,11 @@ pub fn is_scenario(file: &Path) -> bool {
 /// Fails if the scenario cannot be run.
 pub(crate) fn run(arguments: &RunArguments, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     let options = ScenarioOptions::read(arguments, None)?;
-    run_with(&options, &ScenarioFiles::of_system(&arguments.file), library)
+    run_with(&options, &InputFiles::of_system(&arguments.file), library)
 }
 
 /// Runs the scenario in these files.
-fn run_with(options: &ScenarioOptions, files: &ScenarioFiles, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
+fn run_with(options: &ScenarioOptions, files: &InputFiles, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     match ReadyPlan::read(files, options)? {
         ReadyPlan::Crowd(crowd) => crowd::run(crowd, options),
         ReadyPlan::Robots(scenario) => run_robots(*scenario, options, library),
@@ -69,7 +68,7 @@ enum ReadyPlan {
 
 impl ReadyPlan {
     /// Reads the scenario in these files, for a run with these options. Messages go to standard error.
-    fn read(files: &ScenarioFiles, options: &ScenarioOptions) -> Result<Self, Failure> {
+    fn read(files: &InputFiles, options: &ScenarioOptions) -> Result<Self, Failure> {
         let path = &files.path;
         let text = files.text(path, file::LARGEST);
         let text = text.map_err(|error| Failure::Usage(format!("{} cannot be read: {error}", path.display())))?;

@@ -6,7 +6,7 @@ use mdle_engine::link::LONGEST_TEXT;
 use mdle_runtime::Nanos;
 
 use super::file::{ScenarioError, ScenarioText, SentPlanText, duration};
-use super::files::ScenarioFiles;
+use crate::input_files::InputFiles;
 
 /// A plan that a robot sends.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub(super) struct SentPlan {
 ///
 /// # Errors
 /// Fails if a value is invalid, or if a file cannot be read.
-pub(super) fn sent_by(own: &str, file: &ScenarioText, files: &ScenarioFiles) -> Result<Vec<SentPlan>, ScenarioError> {
+pub(super) fn sent_by(own: &str, file: &ScenarioText, files: &InputFiles) -> Result<Vec<SentPlan>, ScenarioError> {
     let names: Vec<&str> = file.robot.iter().map(|robot| robot.name.get_ref().as_str()).collect();
     let mut plans = Vec::new();
     for text in &file.sent_plan {
@@ -49,7 +49,7 @@ pub(super) fn sent_by(own: &str, file: &ScenarioText, files: &ScenarioFiles) -> 
     Ok(plans)
 }
 
-fn sent_plan(text: &SentPlanText, files: &ScenarioFiles) -> Result<SentPlan, ScenarioError> {
+fn sent_plan(text: &SentPlanText, files: &InputFiles) -> Result<SentPlan, ScenarioError> {
     let at = duration(&text.at, 0.0, 1e9)?;
     let file = files.named(text.file.get_ref());
     let unread = |error| format!("the plan {} cannot be read: {error}", file.display());

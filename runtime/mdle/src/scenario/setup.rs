@@ -16,10 +16,10 @@ use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Body, Make, RobotEars, Sim, Simulated, Start, StartNoise, Walls, World};
 
 use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText, duration};
-use super::files::ScenarioFiles;
 use super::sent_plan::{SentPlan, sent_by};
 use crate::arguments::head;
 use crate::failure::{self, Failure};
+use crate::input_files::InputFiles;
 use crate::plans::texts;
 
 /// Maximum size of a path file or a world file, in bytes.
@@ -93,7 +93,7 @@ impl Scenario {
     /// # Errors
     /// Fails if a value in the scenario file is invalid, if a file that it names cannot be read, or if a plan has
     /// errors.
-    pub(super) fn read(text: ScenarioText, files: &ScenarioFiles, seed: Option<u64>) -> Result<Self, SetupError> {
+    pub(super) fn read(text: ScenarioText, files: &InputFiles, seed: Option<u64>) -> Result<Self, SetupError> {
         let seed = seed.or(text.seed.as_ref().map(|seed| *seed.get_ref()));
         let period = text.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
         let timeout = text.timeout.as_ref().map(|timeout| duration(timeout, 0.0, 1e9)).transpose()?;
@@ -107,7 +107,7 @@ impl Scenario {
             period: period.unwrap_or(Sim::PERIOD),
             faults,
             members: Vec::new(),
-            target: Arc::new(files.target(&files.path)?),
+            target: Arc::new(files.settings(&files.path)?.target(Some(Sim::NAME))?),
         };
         let names: Vec<&str> = text.robot.iter().map(|robot| robot.name.get_ref().as_str()).collect();
         for robot in &text.robot {
@@ -119,7 +119,7 @@ impl Scenario {
     }
 
     /// Creates a robot. It must not overlap with the robots that were created before.
-    fn member(&self, text: &RobotText, from: &ScenarioFiles, names: &[&str]) -> Result<ScenarioRobot, SetupError> {
+    fn member(&self, text: &RobotText, from: &InputFiles, names: &[&str]) -> Result<ScenarioRobot, SetupError> {
         let name = text.name.get_ref();
         let (loaded, files) = plan(&text.file, text.plan.as_ref(), from, Some((text, names)))?;
         let plan = loaded.plan();
@@ -206,11 +206,11 @@ pub(super) type PlanWithFiles<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 pub(super) fn plan<A: Alphabet>(
     file: &At<PathBuf>,
     plan_name: Option<&At<String>>,
-    files: &ScenarioFiles,
+    files: &InputFiles,
     robot: Option<(&RobotText, &[&str])>,
 ) -> Result<PlanWithFiles<A>, SetupError> {
     let (place, file) = (file.span(), files.named(file.get_ref()));
-    let target = files.target(&file)?;
+    let target = files.settings(&file)?.target(Some(Sim::NAME))?;
     let mut input = files.plan(&file, &target).map_err(|error| placed(place.clone(), error))?;
     let named = plan_name.map(|plan| plan.get_ref().as_str());
     if let (None, Some(group)) = (robot, input.group(named)) {
@@ -286,7 +286,7 @@ fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError 
 }
 
 /// Returns the world that `text` describes by its name or its file, and the name of the world.
-pub(super) fn world(text: Option<&At<String>>, files: &ScenarioFiles) -> Result<(World, String), ScenarioError> {
+pub(super) fn world(text: Option<&At<String>>, files: &InputFiles) -> Result<(World, String), ScenarioError> {
     let Some(text) = text else {
         let world = World::parse("the empty floor", "");
         let world =
@@ -364,7 +364,7 @@ fn recorded(text: &At<String>, replayed: &[&'static str]) -> Result<&'static str
 /// Reads the paths that a plan replays. The file of a path that the run records may be missing.
 fn paths(
     text: &RobotText,
-    files: &ScenarioFiles,
+    files: &InputFiles,
     names: &[&'static str],
     records: Option<&'static str>,
 ) -> Result<Vec<(&'static str, Vec<Setpoint>)>, ScenarioError> {

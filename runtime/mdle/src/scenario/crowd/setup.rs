@@ -11,13 +11,13 @@ use mdle_sim::{Make, Sim, Simulated};
 
 use super::super::arguments::ScenarioOptions;
 use super::super::file::{At, CrowdText, ScenarioError, ScenarioText, duration};
-use super::super::files::ScenarioFiles;
 use super::super::records::begin;
 use super::super::setup::{self, SetupError};
 use super::alphabet::CrowdAlphabet;
 use super::member::Member;
 use super::places::{Places, hall};
 use super::recorded::RecordedMember;
+use crate::input_files::InputFiles;
 
 /// Maximum number of robots.
 const ROBOTS_MOST: u64 = 100_000;
@@ -46,7 +46,7 @@ impl CrowdSetup {
     pub(in super::super) fn read(
         crowd: &CrowdText,
         file: &ScenarioText,
-        from: &ScenarioFiles,
+        from: &InputFiles,
         options: &ScenarioOptions,
     ) -> Result<Self, SetupError> {
         let count = *crowd.robots.get_ref();
@@ -125,7 +125,7 @@ fn check(plan: &Arc<Loaded<CrowdAlphabet>>, crowd: &CrowdText) -> Result<(), Sce
 fn robots(
     crowd: &CrowdText,
     file: &ScenarioText,
-    from: &ScenarioFiles,
+    from: &InputFiles,
     seed: Option<u64>,
     period: Duration,
 ) -> Result<Vec<Member>, SetupError> {

@@ -1,4 +1,4 @@
-//! The files that a scenario reads: either files on the disk, or copies inside an executable.
+//! The files that a run reads: either files on the disk, or copies inside an executable.
 
 use std::cell::{OnceCell, RefCell};
 use std::collections::BTreeMap;
@@ -6,18 +6,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use mdle_compiler::diagnostic::Diagnostic;
-use mdle_files::{Input, InputError, Settings, Target, Unsaved, plan, read_plan, target, without_mark};
+use mdle_files::{Input, InputError, Settings, Target, Unsaved, plan, read_plan, without_mark};
 use mdle_host::read_file;
 
 use crate::failure;
 
-/// Name of the target of all robots.
-const SIM: &str = "sim";
-
-/// The files of a scenario, by the names that the scenario and its plans use for them.
-pub(super) struct ScenarioFiles {
-    /// Path of the scenario's own file.
-    pub(super) path: PathBuf,
+/// The files of a scenario or of a plan, by the names that the scenario and its plans use for them.
+pub(crate) struct InputFiles {
+    /// Path of the scenario's or the plan's own file.
+    pub(crate) path: PathBuf,
     /// Contents of the files that have been read; inside an executable, contents of all files.
     contents: RefCell<BTreeMap<PathBuf, Vec<u8>>>,
     /// Texts of the files inside an executable, for the plans that use them.
@@ -26,29 +23,29 @@ pub(super) struct ScenarioFiles {
     are_inside: bool,
 }
 
-impl ScenarioFiles {
-    /// Creates the files of the scenario at `path`, for files on the disk.
-    pub(super) fn of_system(path: &Path) -> Self {
+impl InputFiles {
+    /// Creates the files of the scenario or the plan at `path`, for files on the disk.
+    pub(crate) fn of_system(path: &Path) -> Self {
         Self { path: path.to_owned(), contents: RefCell::default(), texts: OnceCell::new(), are_inside: false }
     }
 
-    /// Creates the files of a scenario from copies; `path` is the name of the scenario's file.
-    pub(super) fn inside(path: &Path, contents: BTreeMap<PathBuf, Vec<u8>>) -> Self {
+    /// Creates the files of a scenario or a plan from copies; `path` is the name of its own file.
+    pub(crate) fn inside(path: &Path, contents: BTreeMap<PathBuf, Vec<u8>>) -> Self {
         Self { path: path.to_owned(), contents: RefCell::new(contents), texts: OnceCell::new(), are_inside: true }
     }
 
     /// Returns the contents of all files that have been read.
-    pub(super) fn into_contents(self) -> BTreeMap<PathBuf, Vec<u8>> {
+    pub(crate) fn into_contents(self) -> BTreeMap<PathBuf, Vec<u8>> {
         self.contents.into_inner()
     }
 
     /// Returns the path of a file that the scenario names.
-    pub(super) fn named(&self, name: impl AsRef<Path>) -> PathBuf {
+    pub(crate) fn named(&self, name: impl AsRef<Path>) -> PathBuf {
         self.path.with_file_name("").join(name)
     }
 
     /// Returns `true` if there is a file at `path`.
-    pub(super) fn exists(&self, path: &Path) -> bool {
+    pub(crate) fn exists(&self, path: &Path) -> bool {
         if self.are_inside { self.contents.borrow().contains_key(path) } else { path.exists() }
     }
 
@@ -56,7 +53,7 @@ impl ScenarioFiles {
     ///
     /// # Errors
     /// Fails if the file cannot be read.
-    pub(super) fn read(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    pub(crate) fn read(&self, path: &Path, most: u64) -> io::Result<Vec<u8>> {
         if self.are_inside {
             return self.contents.borrow().get(path).cloned().ok_or_else(|| io::ErrorKind::NotFound.into());
         }
@@ -69,24 +66,24 @@ impl ScenarioFiles {
     ///
     /// # Errors
     /// Fails if the file cannot be read, or is not UTF-8 text.
-    pub(super) fn text(&self, path: &Path, most: u64) -> io::Result<String> {
+    pub(crate) fn text(&self, path: &Path, most: u64) -> io::Result<String> {
         String::from_utf8(self.read(path, most)?).map_err(|_| io::Error::other("it is not UTF-8 text"))
     }
 
-    /// Returns the simulated robot, for a plan in the file at `path`.
+    /// Returns the settings for a plan in the file at `path`; empty for a plan inside an executable, which has none.
     ///
     /// # Errors
     /// Fails if the `mdle.toml` beside the plan has errors.
-    pub(super) fn target(&self, path: &Path) -> Result<Target, InputError> {
-        if self.are_inside { target(Some(SIM)) } else { Settings::beside(path)?.target(Some(SIM)) }
+    pub(crate) fn settings(&self, path: &Path) -> Result<Settings, InputError> {
+        if self.are_inside { Ok(Settings::default()) } else { Settings::beside(path) }
     }
 
     /// Returns the plan in the file at `path`. After compiling it, the caller passes the result to
-    /// [`ScenarioFiles::compiled`].
+    /// [`InputFiles::compiled`].
     ///
     /// # Errors
     /// Fails if the file cannot be read or is not text.
-    pub(super) fn plan(&self, path: &Path, target: &Target) -> Result<Input, InputError> {
+    pub(crate) fn plan(&self, path: &Path, target: &Target) -> Result<Input, InputError> {
         if !self.are_inside {
             return read_plan(path, target);
         }
@@ -99,7 +96,7 @@ impl ScenarioFiles {
 
     /// Stores the files of a plan that has been compiled, and prints its diagnostics. Does nothing for a plan inside an
     /// executable, because both were done when the executable was built.
-    pub(super) fn compiled(&self, input: &Input, diagnostics: &[Diagnostic]) {
+    pub(crate) fn compiled(&self, input: &Input, diagnostics: &[Diagnostic]) {
         if !self.are_inside {
             let files = input.files().map(Path::to_owned).zip(input.texts().map(|text| text.as_bytes().to_vec()));
             self.contents.borrow_mut().extend(files);
