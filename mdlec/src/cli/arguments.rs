@@ -241,6 +241,11 @@ pub(super) struct ExecutableArguments {
     /// Name of the plan to build [default: the only plan that no other plan uses]
     #[arg(long = "plan", value_name = "NAME")]
     pub(super) name: Option<String>,
+    /// Build an executable that contains the Modular Engine, for a plan that reads modules or other robots
+    ///
+    /// The executable contains the text of its plan and takes the options of `mdle run`, such as `--link FILE`.
+    #[arg(long)]
+    pub(super) engine: bool,
     /// Treat warnings as errors
     #[arg(long)]
     pub(super) deny_warnings: bool,

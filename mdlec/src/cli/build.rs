@@ -51,8 +51,9 @@ pub(super) fn build(options: &Build) -> Result<Option<BuiltExecutable>, CommandF
         let sentence = "is a scenario, and `--emit` prints a form of a plan\nhelp: name the plan of a robot";
         return Err(CommandFailure::usage(format!("`{}` {sentence}", path.display())));
     }
-    if machine.is_some() {
-        return Err(CommandFailure::usage("`--machine` is for executables, and this `--emit` makes none"));
+    if let Some((_, option)) = [(machine.is_some(), "--machine"), (about.engine, "--engine")].iter().find(|(is, _)| *is)
+    {
+        return Err(CommandFailure::usage(format!("`{option}` is for executables, and this `--emit` makes none")));
     }
     if *combine && kind != EmitKind::Matrices {
         return Err(CommandFailure::usage("`--combine` sums matrices: it goes with `--emit matrices`"));

@@ -8,7 +8,7 @@ use std::time::Instant;
 use super::compiled::{Emitted, emitted, needs_target};
 use super::progress::{ProgressOutput, build_package};
 use super::version::version;
-use super::{CommandFailure, EmitKind, ExecutableArguments, RunArguments, endings, scenario};
+use super::{CommandFailure, EmitKind, ExecutableArguments, RunArguments, endings, engine, scenario};
 use crate::link::{self, Entry, Package, TargetCrate};
 use mdle_compiler::rust;
 use mdle_files::{RunOption, SafetyEntry, Settings};
@@ -69,6 +69,10 @@ pub(super) fn build(
     if scenario::is_scenario(path) {
         let path = scenario::build(options, path, output, machine)?;
         return Ok(BuiltExecutable { path, settings: Settings::default() });
+    }
+    if options.engine {
+        let settings = Settings::beside(path)?;
+        return Ok(BuiltExecutable { path: engine::build(options, path, output, machine)?, settings });
     }
     let started = Instant::now();
     let settings = Settings::beside(path)?;

@@ -14,6 +14,7 @@ mod each;
 mod emit;
 mod emulator;
 mod endings;
+mod engine;
 mod everywhere;
 mod executable;
 mod explain;

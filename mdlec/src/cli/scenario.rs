@@ -66,6 +66,10 @@ fn must_fit(options: &ExecutableArguments, path: &Path) -> Result<(), CommandFai
         let sentence = "`--plan` is for one robot, and a scenario names the plan of each\nhelp: leave it out";
         return Err(CommandFailure::usage(sentence));
     }
+    if options.engine {
+        let sentence = "`--engine` is for the plan of one robot, and an executable of a scenario has the engine\nhelp: leave it out";
+        return Err(CommandFailure::usage(sentence));
+    }
     must_be_plain(options.deny_warnings)
 }
 
@@ -87,7 +91,7 @@ fn must_be_plain(deny_warnings: bool) -> Result<(), CommandFailure> {
 }
 
 /// Returns the Rust constant with the names and contents of files.
-fn constant(files: &[(String, Vec<u8>)]) -> String {
+pub(super) fn constant(files: &[(String, Vec<u8>)]) -> String {
     let mut rust = "pub const FILES: &[(&str, &[u8])] = &[\n".to_owned();
     for (name, bytes) in files {
         // Writing to a string cannot fail.

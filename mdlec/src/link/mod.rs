@@ -70,7 +70,7 @@ use sources::SourcesCopy;
 use target::Dependencies;
 use toolchain::Toolchain;
 
-/// A plan as Rust code or a scenario as its files, with the data that its executable needs.
+/// A plan as Rust code, or a scenario or a plan as its files, with the data that its executable needs.
 #[derive(Debug, Clone, Copy)]
 pub struct Package<'a> {
     /// Name of the plan or of the scenario, which the executable shows.
@@ -98,6 +98,13 @@ pub enum Entry<'a> {
     Plan(&'a str),
     /// Constant `FILES`, the names and contents of a scenario's files.
     Scenario,
+    /// Constant `FILES`, the names and texts of a plan's files, which an engine runs.
+    Engine {
+        /// Name of the target.
+        target: &'a str,
+        /// Name of the plan; `None` means the only plan that no other plan uses.
+        plan: Option<&'a str>,
+    },
 }
 
 /// A built executable.
@@ -129,7 +136,7 @@ pub fn build(
     let sources = SourcesCopy::unpack(cache)?;
     let dependencies = match package.entry {
         Entry::Plan(_) => target::dependencies(package.target, &sources)?,
-        Entry::Scenario => target::scenario_dependencies(&sources),
+        Entry::Scenario | Entry::Engine { .. } => target::engine_dependencies(&sources),
     };
     let plan = package::write(cache, package, &dependencies, &toolchain, &machine)?;
     superseded::remove_before(cache, package.plan_file, &machine, &plan)?;

@@ -120,6 +120,11 @@ fn main(package: &Package<'_>, version: &str) -> String {
             format!("::mdle_host::run::<::{target}::Target, _>(program, plan::{plan}::new)"),
         ),
         Entry::Scenario => ("a scenario", "::mdle::Program", "::mdle::run_scenario(program, plan::FILES)".to_owned()),
+        Entry::Engine { target, plan } => (
+            "a plan with the engine",
+            "::mdle::Program",
+            format!("::mdle::run_plan(program, plan::FILES, {target:?}, {plan:?})"),
+        ),
     };
     format!(
         "//! Made by mdlec: runs {does}.\n\n\
@@ -196,6 +201,12 @@ mod tests {
     fn the_program_of_a_scenario_runs_its_files() {
         let package = Package { plan_name: "two \"robots\"", entry: Entry::Scenario, ..package("two.toml", "") };
         insta::assert_snapshot!(super::main(&package, "(text 0)"));
+    }
+
+    #[test]
+    fn the_program_with_the_engine_runs_the_files_of_its_plan() {
+        let entry = Entry::Engine { target: "scout", plan: Some("Nap") };
+        insta::assert_snapshot!(super::main(&Package { entry, ..package("nap.mdle", "") }, "(text 0)"));
     }
 
     #[test]

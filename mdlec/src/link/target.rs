@@ -104,15 +104,15 @@ fn builtin(name: &str, crate_name: &str, sources: &SourcesCopy) -> Result<Depend
     })
 }
 
-/// Returns the dependencies of a scenario: only the package that runs scenarios, which includes all robots and the
-/// compiler.
-pub(super) fn scenario_dependencies(sources: &SourcesCopy) -> Dependencies {
+/// Returns the dependencies of a scenario and of a plan with the engine: only the package that runs both, which includes
+/// all robots and the compiler.
+pub(super) fn engine_dependencies(sources: &SourcesCopy) -> Dependencies {
     let (name, folder) = sources::RUNNER;
     Dependencies {
         packages: vec![(name.to_owned(), sources.folder.join(folder))],
         patches: Vec::new(),
         lock: sources::text(sources::LOCK).to_owned(),
-        identity: "scenario".to_owned(),
+        identity: "engine".to_owned(),
         ours: sources.folder.clone(),
     }
 }

@@ -113,7 +113,10 @@ impl<'a> ResolvedQuarks<'a> {
             let message = format!("`{quark}` {what}, and an executable has none");
             let report = Diagnostic::new(Code::E0403, message, call.span, "needs an engine");
             return Err(vec![
-                report.help("`mdle run PLAN --target TARGET` runs such plans; `mdle run --help` lists its targets"),
+                report.help(
+                    "`mdle run PLAN --target TARGET` runs such plans, and with `--engine` mdlec builds an executable that does; \
+                     `mdle run --help` lists the targets",
+                ),
             ]);
         }
         let missing = missing.join(" and ");

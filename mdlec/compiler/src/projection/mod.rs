@@ -111,7 +111,8 @@ fn no_link(plan: &Plan<'_>) -> Diagnostic {
     let name = plan.name.node;
     let message = format!("the group `{name}` needs the state link, and an executable has none");
     Diagnostic::new(Code::E0403, message, plan.name.span, "needs an engine").help(
-        "`mdle run PLAN --target TARGET --link LINK.toml` runs the part of the robot that LINK.toml names, and `mdle run --help` \
-         lists the targets; `mdle run SCENARIO.toml` runs all of them, simulated",
+        "`mdle run PLAN --target TARGET --link LINK.toml` runs the part of the robot that LINK.toml names, and with `--engine` \
+         mdlec builds an executable that does; `mdle run --help` lists the targets; `mdle run SCENARIO.toml` runs all of \
+         them, simulated",
     )
 }
