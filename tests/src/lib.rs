@@ -22,6 +22,7 @@ pub mod outputs;
 pub mod outside;
 pub mod pipeline;
 pub mod productions;
+pub mod pursuit;
 pub mod random_condition;
 pub mod random_plan;
 pub mod random_script;
