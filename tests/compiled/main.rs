@@ -5,6 +5,7 @@ mod bare;
 mod cache;
 mod cargo_configuration;
 mod embed;
+mod engine_executables;
 mod machines;
 mod own_module;
 mod own_target;
