@@ -1,4 +1,4 @@
-//! Fits a line to the echoes of a wall from the sonar that faces it, while the robot drives along the wall.
+//! Fits a line to a wall's echoes, which the sonar that faces the wall receives while the robot drives along the wall.
 
 use crate::Nanos;
 
