@@ -83,7 +83,7 @@ impl Child {
     }
 
     /// Sends a line, and returns the answer as [`Child::line`] does. Refuses a child that has printed something before
-    /// the line is sent, because its answers would be one line ahead from then on.
+    /// the line is sent, because the child's answers would be one line ahead from then on.
     pub(super) fn ask(
         &mut self,
         line: &[u8],
