@@ -18,11 +18,11 @@ const SIM: &str = "sim";
 pub(super) struct ScenarioFiles {
     /// Path of the scenario's own file.
     pub(super) path: PathBuf,
-    /// Contents of the files that have been read; inside an executable, contents of all files.
+    /// Contents of the files that have been read so far; inside an executable, contents of all files of the scenario.
     contents: RefCell<BTreeMap<PathBuf, Vec<u8>>>,
     /// Texts of the files inside an executable, for the plans that use them.
     texts: OnceCell<Unsaved>,
-    /// `true` for copies inside an executable. In this case, no other file is read.
+    /// `true` if the files are copies inside an executable. In this case, no other file is read.
     are_inside: bool,
 }
 
@@ -98,7 +98,7 @@ impl ScenarioFiles {
     }
 
     /// Stores the files of a plan that has been compiled, and prints its diagnostics. Does nothing for a plan inside an
-    /// executable, because both were done when the executable was built.
+    /// executable, because both steps were done when the executable was built.
     pub(super) fn compiled(&self, input: &Input, diagnostics: &[Diagnostic]) {
         if !self.are_inside {
             let files = input.files().map(Path::to_owned).zip(input.texts().map(|text| text.as_bytes().to_vec()));

@@ -53,8 +53,8 @@ impl Coverage {
         self.atom = None;
     }
 
-    /// Takes a turn, after which `atom` is current. For an element that encloses that atom, `evaluate` calls
-    /// its second argument with the number of each fired operand.
+    /// Counts a turn, after which `atom` is current. For an element that encloses that atom, `evaluate` calls its
+    /// second argument with the number of each fired operand.
     pub(super) fn turn(
         &mut self,
         machine: &Machine,

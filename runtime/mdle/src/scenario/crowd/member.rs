@@ -13,7 +13,7 @@ use super::recorded::RecordedMember;
 pub(super) struct Member {
     /// The simulated robot. It is on the heap, so that moving the members of a large crowd between lists is cheap.
     robot: Box<Simulated>,
-    /// The running plan; `None` before it begins.
+    /// The running plan; `None` before the plan begins.
     machine: Option<Box<Machine<LoadedPlan<CrowdAlphabet>>>>,
     input: Twist,
     /// `true` once the plan is over.
