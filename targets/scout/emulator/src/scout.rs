@@ -73,7 +73,7 @@ impl Scout {
     /// Creates a robot that has just been switched on.
     ///
     /// # Errors
-    /// Fails if the simulated world rejects the input, which does not occur here.
+    /// Fails if `body` rejects the null input, which it never does.
     pub fn new(mut body: Simulated) -> Result<Self, String> {
         let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
         let zero = sensed.pose();
