@@ -109,8 +109,8 @@ impl<L: Link> Ros2<L> {
     /// Updates the latest time of `/clock`.
     ///
     /// # Errors
-    /// Fails if `/clock` has gone back by more than [`BACK`], because turns would wait until it has caught up while the
-    /// robot continued to drive.
+    /// Fails if `/clock` has gone back by more than [`BACK`], because turns would wait until the clock has caught up,
+    /// while the robot continued to drive.
     fn follow_clock(&mut self) -> Result<(), Fault> {
         let clock = self.sensing.clock();
         let back = self.latest.saturating_sub(clock);
