@@ -146,7 +146,7 @@ impl Simulated {
         offsets.fold(self.ring.hearing.ring_radius, f64::max) + self.ring.hearing.most + radius
     }
 
-    /// Returns the maximum distance, in metres, between the centres of two such robots that may touch in the next
+    /// Returns the maximum distance, in metres, between the centres of two similar robots that may touch in the next
     /// exchange.
     #[must_use]
     pub fn touches(&self) -> f64 {
@@ -212,7 +212,8 @@ impl Simulated {
     }
 
     /// Returns the last ping of each transducer, in the order of the body's model. These are the data of a robot's
-    /// sonar boards, before a driver combines them into sixteen sonars; a body with only sixteen transducers has none.
+    /// sonar boards, before a driver combines them into sixteen sonars; a body with only sixteen transducers has no
+    /// such data.
     #[must_use]
     pub fn heard(&self) -> &[Heard] {
         &self.ring.heard

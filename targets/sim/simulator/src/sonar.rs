@@ -160,8 +160,8 @@ impl Ring {
         (last == Some(number)).then_some(own)
     }
 
-    /// Returns the nearest of the last echoes of a sonar's transducers, as the range from the transducer and its
-    /// number; `None` without an echo.
+    /// Returns the nearest of the last echoes of a sonar's transducers, as the range from the transducer and the number
+    /// of the transducer; `None` without an echo.
     fn nearest(&self, sonar: usize) -> Option<(f64, usize)> {
         let of_sonar = |number: &usize| self.hearing.transducers[*number].sonar.number() == sonar;
         let heard = (0..self.heard.len()).filter(of_sonar);
