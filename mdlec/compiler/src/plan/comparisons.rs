@@ -51,7 +51,7 @@ pub fn is_way(declaration: &Declaration) -> bool {
         && declaration.unit.is_some_and(|(unit, _)| unit.kind == ParameterKind::Length)
 }
 
-/// Resolves a comparison to a condition.
+/// Converts the argument that was passed for a parameter to the value with which `signal` is compared.
 pub(super) fn resolve(
     written: &tree::Compared,
     span: Span,
