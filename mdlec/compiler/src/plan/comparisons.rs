@@ -51,7 +51,7 @@ pub fn is_way(declaration: &Declaration) -> bool {
         && declaration.unit.is_some_and(|(unit, _)| unit.kind == ParameterKind::Length)
 }
 
-/// Converts the argument that was passed for a parameter to the value with which `signal` is compared.
+/// Resolves a comparison to a condition.
 pub(super) fn resolve(
     written: &tree::Compared,
     span: Span,
@@ -135,7 +135,7 @@ fn like_parameter(call: &Call, quarks: &ResolvedQuarks<'_>, names: DefinitionNam
     call.args.is_empty().then(|| found.fix("did you mean {}?", call.name_span(), near))
 }
 
-/// Converts the argument that was passed for a parameter to a value with which a signal is compared.
+/// Converts the argument that was passed for a parameter to the value with which `signal` is compared.
 fn given(parameter: &Parameter<'_>, at: Span, signal: SignalCall<'_>) -> Fitted {
     let SignalCall { unit, declaration, .. } = signal;
     if parameter.kind != unit.kind {
