@@ -38,7 +38,7 @@ pub(super) struct CourseTransition {
     pub(super) t: Nanos,
     /// Number of the atom that was left.
     pub(super) from: Option<u32>,
-    /// Number of the atom that was entered; `None` if the plan is over.
+    /// Number of the atom that was entered; `None` if the plan has ended.
     pub(super) to: Option<u32>,
     /// Number of the element that ended.
     pub(super) scope: u32,

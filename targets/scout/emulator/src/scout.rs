@@ -49,8 +49,8 @@ pub struct Scout {
     age: Duration,
     /// `true` while the emergency stop is pressed.
     pub emergency: bool,
-    /// Faults of the body: the right wheel is stuck, the front sonar is dead, the first bumper is pressed, the battery
-    /// is low, the charger is plugged in, or the sonars do not ping.
+    /// `true` while the right wheel is stuck. The next fields are further faults of the body: the front sonar is dead,
+    /// the first bumper is pressed, the battery is low, the charger is plugged in, and the sonars do not ping.
     is_stuck: bool,
     is_deaf: bool,
     is_pressed: bool,
