@@ -26,7 +26,7 @@ pub struct Post {
     pub about: About,
     /// The value that was published last; `None` before the first publication.
     pub reading: Option<Reading>,
-    /// Latency that the module declares for the time between two of its exchanges.
+    /// Latency of the module: the declared time between two of its exchanges.
     pub latency: Nanos,
     /// Number of values that were not published because they contain NaN.
     pub refused: u64,

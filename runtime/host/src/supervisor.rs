@@ -204,11 +204,12 @@ pub struct Supervision<'s, B: Pilot> {
     /// Function that creates the plan with this number for [`Verdict::Diverted`]; it returns `None` if there is no such
     /// plan.
     pub diversions: &'s (dyn Fn(usize) -> Option<B::Plan> + Sync),
-    /// A function that creates the supervisor of a run, given the terms of the run.
+    /// Stream for the report and messages of a session, because the session uses standard output itself. A session is a
+    /// single run.
     pub session: Option<BorrowedFd<'s>>,
 }
 
-/// A function that creates the supervisor of a run, given the conditions of the run.
+/// A function that creates the supervisor of a run, given the terms of the run.
 pub type MakeSupervisor<'s, B> = dyn Fn(&RunTerms) -> Box<dyn Supervisor<B> + 's> + Sync + 's;
 
 impl<B: Pilot> Clone for Supervision<'_, B> {

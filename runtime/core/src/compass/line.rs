@@ -1,4 +1,5 @@
-//! Fits a line to a wall's echoes, which the sonar that faces the wall receives while the robot drives along the wall.
+//! Fits a line to a wall's echoes while the robot drives along the wall; the sonar that faces the wall receives these
+//! echoes.
 
 use crate::Nanos;
 

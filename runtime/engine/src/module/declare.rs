@@ -109,7 +109,7 @@ impl Declare {
     }
 
     /// Declares that this module reads an attribute of another module. The other module may be loaded later or never.
-    /// If that module publishes the attribute with another kind, whichever of the two modules is loaded last is
+    /// If that module publishes the attribute with another kind, the one of the two modules that is loaded last is
     /// refused.
     pub fn reads<T: Attribute>(&mut self, module: &str, attribute: &str) -> In<T> {
         In::new(self.reads_as(module, attribute, T::KIND))

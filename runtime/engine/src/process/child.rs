@@ -189,7 +189,7 @@ impl Child {
         })
     }
 
-    /// Waits for the child to end, at most for this time; returns its status if it has ended.
+    /// Waits at most `time` for the child to end; returns its status if it has ended.
     fn status_within(&mut self, time: Duration) -> Option<ExitStatus> {
         let begun = Instant::now();
         loop {

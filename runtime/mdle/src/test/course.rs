@@ -151,7 +151,8 @@ impl TestCourse {
     }
 }
 
-/// Returns the law of an atom with its line, as in `go 20 0 (line 6)`; for `None`, the end of the plan.
+/// Returns the law of an atom with its line, as in `go 20 0 (line 6)`; if `atom` is `None`, returns "the end of the
+/// plan".
 pub(super) fn atom_words(machine: &Machine, words: &dyn Words, atom: Option<u32>) -> String {
     let Some(atom) = atom else { return "the end of the plan".to_owned() };
     let atom = machine.atom(atom);

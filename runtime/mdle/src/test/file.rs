@@ -213,7 +213,8 @@ pub(super) fn read(text: &str) -> Result<TestFile, TestFileError> {
     Ok(file)
 }
 
-/// Returns the error for text that the TOML parser refuses; for an unknown key, with the most similar name.
+/// Returns the error for text that the TOML parser refuses. For an unknown key, the error proposes the most similar
+/// name.
 fn refused(error: &toml::de::Error) -> TestFileError {
     let place = error.span();
     let words = [("a sequence", "a list"), ("map", "a table"), ("u64", COUNT), ("u8", COUNT)];

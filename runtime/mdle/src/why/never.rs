@@ -73,7 +73,7 @@ pub(crate) struct Stay {
     pub(crate) cause: String,
 }
 
-/// The turns in which the end of a scope would have led to an atom in question.
+/// The turns in which the end of a scope would have led to one of the atoms about which the question asks.
 #[derive(Debug)]
 pub(crate) struct Chance {
     /// Name of the scope that would have begun; `None` unless this scope encloses the element about which the question

@@ -43,8 +43,8 @@ impl Member {
         Self { record: record.map(Box::new), ..self }
     }
 
-    /// Returns two distances between the centres of two such robots, in metres: the distance within which one may
-    /// detect the other with its sonars, and the distance within which they may touch in a turn.
+    /// Returns two distances between the centres of this robot and a similar one, in metres: the distance within which
+    /// one may detect the other with its sonars, and the distance within which they may touch in a turn.
     pub(super) fn reaches(&self) -> (f64, f64) {
         (self.robot.hears(), self.robot.touches())
     }
