@@ -9,7 +9,7 @@ use std::{io, iter};
 use rustix::fs::inotify::{self, CreateFlags, ReadFlags, Reader, WatchFlags};
 use rustix::io::Errno;
 
-/// State of each line, in order, which shows if a driver is connected.
+/// State of each line, in order; each state shows if a driver is connected to its line.
 #[derive(Debug)]
 pub(crate) struct Presence {
     watch: OwnedFd,

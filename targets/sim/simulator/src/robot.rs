@@ -118,8 +118,7 @@ impl Simulated {
         })
     }
 
-    /// Creates another robot with the same body, the same world and the current battery of this one, at rest at
-    /// `start`.
+    /// Creates another robot, at rest at `start`, with the body, the world and the current battery of this robot.
     ///
     /// # Errors
     /// Fails if the robot cannot start at `start` in `world`, which must be the world of this robot.

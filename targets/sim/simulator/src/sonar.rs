@@ -188,7 +188,7 @@ impl Ring {
 
 impl SonarErrors {
     /// Returns the measured range for the exact range `exact`; `None` if there is no echo. Every ping uses the same
-    /// number of random numbers, whatever its result is.
+    /// number of random numbers, regardless of its result.
     fn of(&mut self, exact: Option<f64>, hearing: &Hearing) -> Option<f64> {
         let missed = self.ranges.uniform() < hearing.misses;
         let error = hearing.spread * self.ranges.normal();
