@@ -1,4 +1,4 @@
-//! Packs the sources from which executables are built.
+//! Embeds in mdlec the sources from which executables are built.
 
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 

@@ -139,7 +139,8 @@ impl Aligning {
         }
     }
 
-    /// Returns the turn rate towards equal ranges while the heading with equal ranges is not known yet.
+    /// Returns the turn rate, in rad/s, that reduces the difference of the ranges, as long as the heading at which the
+    /// ranges are equal is not known.
     fn towards<Y: DiffDrive + SonarRing>(&self, y: &Y, sample: Option<Sample>, t: Nanos) -> f64 {
         let rate = sample.map_or_else(|| self.unheard(y, t), |sample| y.steering().align * sample.difference);
         self.sense() * bounded(rate, Gains::of(y).align_fastest)

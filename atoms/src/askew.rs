@@ -11,8 +11,8 @@ use crate::directions::{CONE, DIRECTIONS, after, newest, off, towards};
 const ALSO_FACES: f64 = 1.5;
 /// Difference, in metres, below which ranges are treated as equal.
 const ALIKE: f64 = 0.06;
-/// Minimum angle between a diagonal direction and a ping that shows that a wall, and not an edge, faces the robot in
-/// this direction.
+/// Minimum angle between a diagonal direction and a ping at which the ping can show that a wall, and not an edge, faces
+/// the robot in this direction.
 const BESIDE: Radians = Radians::from_degrees(16.0);
 /// Maximum distance, in metres, between an echo and the line of a wall that faces the robot in a diagonal direction. At
 /// the edge of a passage, the echoes of the rough walls that lead away from the edge are beyond this line by more than
@@ -24,7 +24,7 @@ const OF_LINE: f64 = 0.04;
 const SMOOTH_AT: [f64; 7] = [26.0, 31.0, 38.0, 45.0, 52.0, 59.0, 64.0];
 /// Angle from the normal of a smooth wall up to which the wall returns an echo.
 const WIDTH: Radians = Radians::from_degrees(31.0);
-/// Angle from the normal of a wall up to which a range is taken for the distance of the wall.
+/// Angle from the normal of a wall up to which a range is treated as the distance of the wall.
 const MIDDLE: Radians = Radians::from_degrees(14.0);
 /// Range of angles from the normal of a smooth wall at which the wall returns no echo.
 const BEYOND: [Radians; 2] = [Radians::from_degrees(44.0), Radians::from_degrees(66.0)];

@@ -1,5 +1,5 @@
-//! `atIsection b`: fires when the directions front, left, back and right are blocked or free, as the bits say (paper,
-//! section IV-A).
+//! `atIsection b`: fires when the directions front, left, back and right are blocked or free, as the bits of `b`
+//! require (paper, section IV-A).
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Bits, Interrupt, SonarId};
@@ -52,9 +52,8 @@ fn blocked<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
 }
 
 /// Returns `Some(true)` if an obstacle is near in the direction of `sonar`, and `Some(false)` if the direction is free,
-/// on a robot whose sonars fire in turn; `None` after too few pings. All pings are considered that were made in that
-/// direction of the room, by whichever sonar, because the last pings of a single sonar of a turning robot were in other
-/// directions.
+/// on a robot whose sonars fire in turn; `None` after too few pings. Considers all pings that any sonar has made in
+/// that direction of the room, because the last pings of a single sonar of a turning robot were in other directions.
 fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     let near = towards(y, sonar)?;
     Some(near < y.blocked_within())
@@ -245,8 +244,9 @@ mod tests {
         assert!(fires("1001", &in_turn(ranges)));
     }
 
-    /// Returns the verdicts that nothing is near and that something is near behind, of a robot that turns fast by 73°
-    /// beside a wall behind it, which its sonars 10 and 9 miss; sonar 9 pings `later` nanoseconds after sonar 10.
+    /// Returns two verdicts for a robot that turns fast by 73° beside a wall: that nothing is near behind the robot,
+    /// and that something is near behind it. The wall is behind the robot, but its sonars 10 and 9 miss the wall; sonar
+    /// 9 pings `later` nanoseconds after sonar 10.
     fn behind_a_robot_that_turns(later: u64) -> (bool, bool) {
         let mut ranges = [9.0; 16];
         ranges[11] = 0.762;

@@ -10,8 +10,8 @@ const SPEEDS: [f64; 2] = [0.25, 2.0];
 /// Maximum turn rate of the robot, in rad/s, between compared echoes: as the robot turns, the echo of a wall
 /// moves along the wall.
 const TURNS: f64 = 0.02;
-/// Maximum angle, in radians, by which the robot may turn between compared echoes, at whatever rate. A turn by this
-/// angle hardly moves an echo, and skidding wheels turn the robot to and fro by as much.
+/// Maximum angle, in radians, by which the robot may turn between compared echoes, at any rate. A turn by this angle
+/// hardly moves an echo, and skidding wheels turn the robot to and fro by this much.
 const TURNED: f64 = 0.01;
 /// Minimum decrease, in metres, of the distance of a crossing person from the first compared echo to the last. A
 /// smaller decrease may be an error of the ranges.
@@ -21,17 +21,18 @@ const PERSON: f64 = 0.25;
 /// Distance, in metres, that the robot leaves between a person and its body, because the direction of an echo within
 /// the cone of its sonar is not known.
 const CLEAR: f64 = 0.2;
-/// The robot backs off only from a person who is at least this far, in metres, from its way. Echoes of the rough walls
-/// of a hallway, whose ranges may decrease by chance, are nearer.
+/// Minimum distance, in metres, between a person and the robot's way: from a nearer person, the robot does not back
+/// off. Echoes of the rough walls of a hallway, whose ranges may decrease by chance, are nearer.
 const FAR: f64 = 1.2;
-/// The robot backs off only from a person who will reach its way within this time, in seconds.
+/// Maximum time, in seconds, before a person reaches the robot's way: if the person needs longer, the robot does not
+/// back off.
 const BACK: f64 = 5.0;
 /// Minimum distance, in metres, between a crossing person and the way. A person nearer to the way is an obstacle, or
 /// walks along the way.
 const ASIDE: f64 = 0.45;
-/// The robot reacts only to a person who will reach its way within this time, in seconds. A sonar that pings once a
-/// second takes two seconds until three pings agree, and the direction of its echoes is uncertain by several degrees.
-/// A robot that stops later may already be where the person walks.
+/// Maximum time, in seconds, before a person reaches the robot's way: if the person needs longer, the robot does not
+/// react. A sonar that pings once a second takes two seconds until three pings agree, and the direction of its echoes
+/// is uncertain by several degrees. A robot that stops later may already be where the person walks.
 const SOON: f64 = 8.0;
 
 /// An echo: its time in seconds, and its distance along the way and to the left of it, in metres.
@@ -61,7 +62,7 @@ pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -
 }
 
 /// Returns the person whose echoes are in all kept pings of `sonar`; `None` if there is no such person. The conditions
-/// are those of [`crosses`]. `sin` and `cos` belong to the heading of `here`.
+/// are those of [`crosses`]. `sin` and `cos` are the sine and the cosine of the heading of `here`.
 fn comes<Y: DiffDrive + SonarRing>(
     y: &Y,
     sonar: SonarId,
@@ -163,7 +164,8 @@ mod tests {
         assert!(waits([4.7, 4.2, 3.7]));
     }
 
-    /// Returns `true` if a robot that turns to and fro by this angle, in radians, between pings 180 ms apart waits.
+    /// Returns `true` if a robot waits while it turns to and fro by `angle` radians between pings that are 180 ms
+    /// apart.
     fn waits_while_it_turns(angle: f64) -> bool {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
         for (number, (range, turned)) in (0..).zip([(2.0, 0.0), (1.9, angle), (1.8, 0.0)]) {

@@ -1,4 +1,5 @@
-//! Finds the echoes that a robot's sonars have received from its four directions, whichever sonar faced there.
+//! Finds the echoes that a robot has received from its four directions, regardless of the sonar that faced in each
+//! direction.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Ping, Radians, SONARS, SonarId};
@@ -19,7 +20,7 @@ const ONE_LOOK: Nanos = Nanos(500_000_000);
 /// Minimum angle that a robot has turned since a ping if it turns fast. At 0.36 rad/s, as in the paper's plans, a Scout
 /// turns by 20° while each of its sonars pings.
 const TURNED: Radians = Radians::from_degrees(28.0);
-/// Half the angle of the cone in which a sonar hears a rough wall.
+/// Half the angle of the cone in which a sonar receives echoes of a rough wall.
 pub(crate) const CONE: Radians = Radians::from_degrees(12.5);
 /// Maximum distance, in metres, between a wall and the edge of a cone at which the cone is treated as reaching the
 /// wall.
@@ -55,7 +56,8 @@ fn is_one_look<Y: SonarRing>(y: &Y, direction: SonarId, one: (SonarId, &Ping), o
     one.0 != other.0 && !is_of_direction && is_of_ring && turned.abs() > TURNED.0
 }
 
-/// Returns the newest pings that count in the present direction of a sonar, newest first.
+/// Returns the newest pings, newest first, that were made in the present direction of the sonar `direction` and for
+/// which `counts` returns `true`.
 pub(crate) fn newest<Y: SonarRing, const N: usize>(
     y: &Y,
     direction: SonarId,
@@ -83,7 +85,7 @@ pub(crate) fn newest<Y: SonarRing, const N: usize>(
 }
 
 /// Returns `true` if this ping of `sonar` was in the present direction of the sonar `direction`, and its echo, if it
-/// had one, still lies in that direction. The echo of a door post that the robot has passed no longer does.
+/// had one, still lies in that direction. The echo of a door post that the robot has passed no longer lies there.
 fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
     let here = y.here();
     let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);

@@ -31,8 +31,8 @@ const DETOUR: Radians = Radians::from_degrees(60.0);
 /// Time after which a detour follows its obstacle and no longer aims at the goal, whose direction would lead back to
 /// the place where the detour began.
 const ALONG_AFTER: Nanos = Nanos(8_000_000_000);
-/// While a detour follows its obstacle, the robot aims at a direction that is at this angle from its heading, on the
-/// side of the obstacle.
+/// Angle between the robot's heading and the direction at which the robot aims while a detour follows its obstacle.
+/// This direction is on the side of the obstacle.
 const ALONG: Radians = Radians::from_degrees(40.0);
 /// Distance by which the robot must have come nearer to the goal before a detour ends; `DETOUR_LEAST` must have passed
 /// as well.
@@ -91,7 +91,7 @@ pub struct GoingRound {
     /// `true` if another goal has replaced the first one.
     is_renewed: bool,
     progress: Progress,
-    /// Direction of the frame's first axis.
+    /// Direction of the frame's x axis.
     axis: Radians,
     /// The drift of the heading by which the goal has been rotated so far, and the pose at which the drift last
     /// changed.
@@ -240,8 +240,8 @@ struct Chosen {
 }
 
 impl GoingRound {
-    /// Chooses a direction from the pings of the sonars. While the robot keeps out of the way of a person who crosses
-    /// it, returns the input as an error instead.
+    /// Chooses a direction from the pings of the sonars. While the robot keeps clear of a person who crosses its way,
+    /// returns the input as an error instead.
     ///
     /// The function is not inlined, so that its obstacles are no longer on the stack when [`Self::squeeze`] puts a map
     /// there.

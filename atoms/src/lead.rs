@@ -1,5 +1,5 @@
-//! `lead`: drives as `goAvoid` does, for a robot beside which other robots keep slots (paper, sections II-C and
-//! III-G: group atoms).
+//! `lead`: drives as `goAvoid` does, for a robot that leads a formation, in which other robots keep positions beside it
+//! (paper, sections II-C and III-G: group atoms).
 
 use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing, StateLink, Steering};
 use mdle_runtime::{

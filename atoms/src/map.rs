@@ -42,7 +42,7 @@ const FURTHEST: f64 = 1e8;
 /// Number of parts into which the sonars are divided, on a robot whose sonars all ping in every turn. In each turn, one
 /// part is read.
 const THIRDS: usize = 3;
-/// Cells nearer to an echo than this distance, in metres, are not marked as free.
+/// Distance from an echo, in metres, within which cells are not marked as free.
 const BEFORE: f64 = 0.08;
 
 /// A cell, given by its indices along both axes of the odometry coordinates.
@@ -79,7 +79,8 @@ fn below(number: f64) -> i32 {
 /// Number of binary places of a coordinate on the map, which makes its resolution 0.05 µm.
 const BINARY: u32 = 20;
 
-/// Converts a number of cells, at most a few times those of the map, to a fixed-point number.
+/// Converts a number of cells to a fixed-point number. The number is at most a few times the number of cells of the
+/// map.
 fn fixed(cells: f64) -> i32 {
     const LIMIT: f64 = 4.0 * CELLS as f64;
     (cells.clamp(-LIMIT, LIMIT) * f64::from(1 << BINARY)) as i32
@@ -108,7 +109,7 @@ impl Map {
         Self { evidence: [UNKNOWN_ROW; ROWS], corner: Cell { x: 0, y: 0 }, taken: [None; THIRDS], third: 0 };
 
     /// Updates the map with the pings since the last turn; the robot is at `here`. On a robot whose sonars all ping in
-    /// every turn, each sonar is read in every third turn, about as often as a sonar pings that fires in turn.
+    /// every turn, each sonar is read in every third turn, which is about as often as a sonar that fires in turn pings.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
         self.move_to(here);
         let least = Gains::of(y).least_range;
@@ -184,7 +185,7 @@ impl Map {
         })
     }
 
-    /// Records an echo. If a cell on the echo's arc is occupied, the evidence of the cells that have the most is
+    /// Records an echo. If a cell on the echo's arc is occupied, the evidence of the cells with the most evidence is
     /// increased; otherwise all cells on the arc become occupied.
     fn hit(&mut self, from: Pose, axis: Radians, range: f64) {
         let cells = ARC.map(|degrees| {
@@ -237,7 +238,7 @@ impl Map {
         }
     }
 
-    /// Resets the cells with this index along the first axis to unknown.
+    /// Resets the cells with this x index to unknown.
     fn forget_column(&mut self, x: i32) {
         let (_, column, shift) = place(Cell { x, y: 0 });
         for byte in self.evidence.iter_mut().filter_map(|row| row.get_mut(column)) {
@@ -245,7 +246,7 @@ impl Map {
         }
     }
 
-    /// Resets the cells with this index along the second axis to unknown.
+    /// Resets the cells with this y index to unknown.
     fn forget_row(&mut self, y: i32) {
         let (row, ..) = place(Cell { x: 0, y });
         if let Some(row) = self.evidence.get_mut(row) {

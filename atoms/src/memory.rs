@@ -13,7 +13,7 @@ const KEPT: i32 = 15_000;
 /// Range, in metres, beyond which echoes are not kept.
 const NEAR: f64 = 1.2;
 
-/// A place of an echo, in odometry coordinates, with the time of the last echo there.
+/// The position of an echo, in odometry coordinates, with the time of the last echo there.
 ///
 /// In single precision a place 1 km away is exact to 0.03 mm, far below the resolution of a sonar, and the places take
 /// half of the memory.
@@ -46,7 +46,7 @@ pub(crate) struct Memory {
     echoes: [Echo; PLACES],
     /// Number of stored positions, from the first entry on.
     count: usize,
-    /// Time of the last ping of each sonar that was read; later than any time before the first one.
+    /// For each sonar, time of its last ping that was read; [`Nanos::MAX`] before the first one.
     read: [Nanos; SONARS],
 }
 
@@ -104,8 +104,8 @@ mod tests {
     use super::*;
     use crate::trial::Sensed;
 
-    /// Returns the number of places kept `later` milliseconds after the last of `pings` straight ahead, one a
-    /// millisecond, each with the robot's distance along the first axis and the range.
+    /// Returns the number of positions that are kept `later` milliseconds after the last of `pings`. The pings are
+    /// straight ahead, one millisecond apart; each contains the robot's distance along the x axis, and the range.
     fn kept(pings: &[(f64, f64)], later: u64) -> usize {
         let (mut y, mut memory) = (Sensed::default(), Memory::EMPTY);
         for (x, range) in pings {

@@ -34,8 +34,8 @@ pub(crate) struct Passers {
     crossed: u32,
     /// Time until which the robot stands still, because a person crosses its way.
     stands_until: Nanos,
-    /// Pose at which the robot last detected this person, and the distance, in metres, by which it backs off from
-    /// there.
+    /// Pose at which the robot last detected the crossing person, and the distance, in metres, by which the robot backs
+    /// off from there.
     back: (Pose, f64),
 }
 

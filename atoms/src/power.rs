@@ -4,7 +4,8 @@
 use mdle_runtime::capability::Power;
 use mdle_runtime::{Interrupt, Signal};
 
-/// The interrupt `lowBattery`, which fires while the robot reports a low battery, which it decides by its own limit.
+/// The interrupt `lowBattery`, which fires while the robot reports a low battery. The robot's own limit determines when
+/// the battery is low.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LowBattery;
 

@@ -4,7 +4,7 @@
 use mdle_runtime::capability::Odometry;
 use mdle_runtime::{Interrupt, Meters, Nanos, Pose};
 
-/// Length, in metres, by which a law must come nearer to its goal to have made progress.
+/// Distance, in metres, by which the robot must come nearer to the goal of its law to have made progress.
 const NEARER: f64 = 0.1;
 
 /// The interrupt `stuck`, which fires when the law of the previous turn has made no progress for `duration`.

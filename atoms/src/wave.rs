@@ -37,8 +37,8 @@ const PASSES: u32 = 12;
 /// Distance, in metres, by which the end of a way at the map's edge must be nearer to the goal than the distance `from`
 /// of [`Ends`].
 const GAINS: f64 = 0.5;
-/// Distance from the robot, in metres, that lies just beyond the corners of the map. The distance to the goal beyond it
-/// is not included in the costs, so that a cost fits into a cell.
+/// Distance from the robot, in metres, that lies just beyond the corners of the map. The part of the distance to the
+/// goal that lies further away is not included in the costs, so that a cost fits into a cell.
 pub(crate) const EDGE: f64 = 2.4;
 
 /// The ends of ways on a map.
@@ -277,7 +277,7 @@ impl Wave {
         }
     }
 
-    /// Returns the next cell along the way from this one; `None` at its end.
+    /// Returns the next cell along the way from this cell; `None` at the end of the way.
     pub(crate) fn next(&self, cell: usize) -> Option<usize> {
         const STEPS: [(usize, u16); 4] = [(1, STRAIGHT), (SIDE, STRAIGHT), (SIDE - 1, ACROSS), (SIDE + 1, ACROSS)];
         let (mut best, weight) = ((u16::MAX, cell), factor(self.at(cell)));

@@ -179,8 +179,8 @@ mod tests {
         }
     }
 
-    /// Returns the first place to which the robot drives past a wall 0.6 m ahead; `None` if there is no way. The wall
-    /// has a gap of this width, in metres, with its middle 0.3 m to the left.
+    /// Returns the first place to which the robot drives on its way past a wall 0.6 m ahead; `None` if there is no way.
+    /// The wall has a gap of this width, in metres, with its middle 0.3 m to the left.
     fn through(gap: f64, y: &Sensed) -> Option<(f64, f64)> {
         let mut map = Map::EMPTY;
         map.occupy((0.6, 0.3 + gap / 2.0), (0.6, 1.55));

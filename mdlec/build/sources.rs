@@ -1,5 +1,5 @@
-//! Packs the sources from which executables are built, so that an installed mdlec needs no checkout. Writes them as a
-//! table, which `link::sources` includes.
+//! Embeds in mdlec the sources from which executables are built, so that an installed mdlec needs no checkout. Writes
+//! the sources as a table, which `link::sources` includes.
 
 use std::error::Error;
 use std::ffi::OsStr;
@@ -9,7 +9,7 @@ use std::{env, fs};
 
 use crate::targets::{checkout, manifest, targets};
 
-/// Packages that are packed in addition to those of the targets: targets share them, or scenarios need them.
+/// Packages that are embedded in addition to those of the targets: targets share them, or scenarios need them.
 const SHARED: [&str; 13] = [
     "runtime/core",
     "runtime/quantity",
@@ -26,8 +26,8 @@ const SHARED: [&str; 13] = [
     "mdlec/files",
 ];
 
-/// Names of folders that are not packed, because no build of an executable reads them. Nested packages are not packed
-/// with the enclosing package either.
+/// Names of folders that are not embedded, because no build of an executable reads them. Nested packages are not
+/// embedded with the enclosing package either.
 const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "target"];
 
 /// Name of a workspace's lock file.
@@ -90,8 +90,8 @@ fn workspace(root: &Path, packages: &[String], apart: &[String]) -> Result<Strin
     Ok(toml::to_string(&manifest)?)
 }
 
-/// Returns a package's manifest without the tests, benchmarks and examples, whose files are not packed: cargo rejects a
-/// manifest that names a missing file.
+/// Returns a package's manifest without the tests, benchmarks and examples, whose files are not embedded: cargo rejects
+/// a manifest that names a missing file.
 fn manifest_of(text: &str) -> Result<String, Box<dyn Error>> {
     let mut manifest: toml::Table = text.parse()?;
     if !["test", "bench", "example"].map(|kind| manifest.remove(kind).is_some()).contains(&true) {
@@ -110,7 +110,7 @@ fn table_in<'a>(table: &'a mut toml::Table, name: &str) -> Result<&'a mut toml::
     table.get_mut(name).and_then(toml::Value::as_table_mut).ok_or_else(|| format!("Cargo.toml has no table `{name}`"))
 }
 
-/// Appends to `files` the files to be packed in `folder` and its subfolders. `name` is the prefix of their names.
+/// Appends to `files` the files to be embedded from `folder` and its subfolders. `name` is the prefix of their names.
 fn collect(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

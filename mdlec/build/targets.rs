@@ -1,4 +1,5 @@
-//! Finds the folders of the targets that are built into mdlec, for the build scripts that pack these targets' files.
+//! Finds the folders of the targets that are built into mdlec, for the build scripts that embed the files of these
+//! targets.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

@@ -16,8 +16,8 @@ pub fn repeated(count: u64) -> u64 {
     factor().map_or(count.div_ceil(2), |factor| count * factor)
 }
 
-/// Returns the size of an input for which an unoptimized mdlec takes long: `most` if the variable `MDLE_LONG` is more
-/// than 1, `less` if not.
+/// Returns the size of a test's input: `most` if the variable `MDLE_LONG` is more than 1, `less` if not. Used for
+/// inputs for which an unoptimized mdlec takes long.
 ///
 /// # Panics
 ///

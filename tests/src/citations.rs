@@ -2,7 +2,7 @@
 
 use crate::repository::TextFile;
 
-/// Folder of the book's pages, with which citations begin.
+/// Folder of the book's pages. Every citation begins with it.
 const BOOK: &str = "docs/src/";
 
 /// A citation, such as `PAGE, 5.2 and 6`.
@@ -54,7 +54,7 @@ fn number(text: &str) -> &str {
     text.get(..end).unwrap_or_default().trim_end_matches('.')
 }
 
-/// Returns the numbers of a page's sections, with which their headings begin.
+/// Returns the section numbers at the beginning of a page's headings.
 #[must_use]
 pub fn numbered_sections(page: &TextFile) -> Vec<&str> {
     let headings = page.text.lines().filter(|line| line.starts_with('#'));

@@ -10,7 +10,7 @@ use mdle_compiler::fsm::{Machine, expand, lower};
 use mdle_compiler::syntax::Loader;
 use mdle_compiler::trace::{CountedRun, MatrixProduct, Script, TableMachine, TraceLine, TreeWalk, run};
 
-/// Maximum number of states up to which a plan is also run in its expanded form.
+/// Maximum number of states of a plan that is also run in its expanded form.
 const EXPANDED: u64 = 2000;
 
 /// Name of the only file that plans can use in these tests.

@@ -15,7 +15,7 @@ pub struct Values {
     pub r3: f64,
     /// Range of sonar 5, in metres.
     pub r5: f64,
-    /// Position along the first axis, in metres.
+    /// The x coordinate of the robot's position, in metres.
     pub x: f64,
     /// Heading, in degrees.
     pub theta: f64,

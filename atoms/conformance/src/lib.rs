@@ -46,7 +46,7 @@ pub trait Stage {
     const PERIOD: Nanos;
 
     /// Returns a robot that has just been started, has made no exchange yet, and is at rest in this room at this pose.
-    /// It replaces any earlier robot.
+    /// The new robot replaces any earlier one.
     ///
     /// # Errors
     /// Fails with a message if the robot cannot be started.

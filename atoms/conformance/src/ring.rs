@@ -14,8 +14,8 @@ pub(super) const HEARD: f64 = 3.2;
 /// Tolerance of a range, in metres. A sonar may have a resolution of an inch, and need not be mounted exactly on the
 /// ring.
 const RANGE: f64 = 0.05;
-/// Distances from the centre, in metres, of the walls in front of the sonars, all different. The walls of sonars with
-/// even numbers are nearer than the walls next to them, because on some robots such a sonar measures with two
+/// Distances from the centre, in metres, of the walls in front of the sonars, all different. Sonars with even numbers
+/// have nearer walls than their neighbours, because on some robots a sonar with an even number measures with two
 /// transducers. The sequence differs from each of its rotations and reversals, so that the checks detect sonars in a
 /// wrong order.
 const WALLS: [f64; SONARS] =

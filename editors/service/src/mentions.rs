@@ -32,13 +32,14 @@ pub enum Role {
 /// An occurrence of a name or a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mention<'s> {
-    /// Place of the occurrence.
+    /// Span of the occurrence.
     pub span: Span,
     /// The name, or the number with its unit.
     pub text: &'s str,
     /// Meaning of the name or number.
     pub role: Role,
-    /// Place where the name is defined; equal to `span` at the definition itself; `None` if no plan defines the name.
+    /// Span of the name in its definition; equal to `span` at the definition itself; `None` if no plan defines the
+    /// name.
     pub defined: Option<Span>,
 }
 

@@ -195,7 +195,7 @@ impl Diagnostic {
         Self { code, message: message.into(), labels: vec![label], help: Vec::new() }
     }
 
-    /// Adds a further place to the diagnostic; `span` explains the mistake.
+    /// Adds a further place to the diagnostic. The text at `span` explains the mistake.
     #[must_use]
     pub fn also(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label { span, text: text.into(), primary: false });

@@ -25,7 +25,7 @@ pub mod trace;
 use alphabet::Alphabet;
 use diagnostic::{Diagnostic, SourceId};
 
-/// A plan in the form that each stage produces.
+/// A plan in the forms that the stages produce.
 #[derive(Debug, Clone)]
 pub struct Compiled {
     /// Resolved plan; may be degenerate.
@@ -39,11 +39,11 @@ pub struct Compiled {
 }
 
 impl Compiled {
-    /// Replaces the names in a script with quark texts of the plan ([`trace::Script::in_words_of`]). If the plan is for
-    /// one robot of a group, the script may contain texts of the group's plan.
+    /// Replaces each name in a script with the text of the same quark in the plan ([`trace::Script::in_words_of`]). If
+    /// the plan is for one robot of a group, the script may contain texts of the group's plan.
     ///
     /// # Errors
-    /// Fails at the first name that is neither an interrupt of the plan nor a law of the plan that completes.
+    /// Fails at the first name that is neither an interrupt in the plan nor a law in the plan that can complete.
     pub fn worded(&self, script: trace::Script, alphabet: &Alphabet) -> Result<trace::Script, trace::ScriptError> {
         let script = match &self.part {
             Some(part) => script.renamed(|text| part.own_words(text)),

@@ -191,7 +191,8 @@ impl Input {
         Err(InputError::UnknownPlan { file, name: name.to_owned(), plans })
     }
 
-    /// Returns the only plan in `plans`, the results of [`compile`](Self::compile), each with the plan's name.
+    /// Returns the only result in `plans`, which contains the results of [`compile`](Self::compile) with the names of
+    /// the plans.
     ///
     /// # Errors
     /// Fails if `plans` is empty or has several plans.

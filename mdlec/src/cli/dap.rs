@@ -1,4 +1,4 @@
-//! `mdlec dap`: serves an editor as a debugger on standard input and output.
+//! `mdlec dap`: debugs plans for an editor, through the Debug Adapter Protocol on standard input and output.
 
 use mdle_debugger::ServeError;
 

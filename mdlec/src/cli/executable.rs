@@ -13,7 +13,7 @@ use crate::link::{self, Entry, Package, TargetCrate};
 use mdle_compiler::rust;
 use mdle_files::{RunOption, SafetyEntry, Settings};
 
-/// Builds the executable of a plan, and replaces this process by it.
+/// Builds the executable of a plan, and replaces this process by the executable.
 pub(super) fn run(options: &RunArguments) -> Result<(), CommandFailure> {
     let path = begin(&options.executable)?;
     let output = options.executable.output.clone();

@@ -1,4 +1,5 @@
-//! `mdlec lsp`: serves an editor on standard input and output.
+//! `mdlec lsp`: provides language features to an editor, through the Language Server Protocol on standard input and
+//! output.
 
 use mdle_language_server::ServeError;
 

@@ -74,8 +74,8 @@ fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     }
 }
 
-/// Returns the error for a run in which cargo did not begin to compile, or in which a crate does not compile that mdlec
-/// has not generated.
+/// Returns the error for a run in which cargo did not begin to compile, or in which a crate that mdlec has not
+/// generated does not compile.
 fn others(
     job: &PackageBuild<'_>,
     run: &CargoResult,

@@ -20,7 +20,7 @@ static UNFINISHED: Mutex<Vec<CleanupTask>> = Mutex::new(Vec::new());
 /// A child process to terminate, or a file to remove, when a signal arrives.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum CleanupTask {
-    /// A child process, with the process group of its guard.
+    /// A child process, and the process group of its guard, to which the child belongs.
     Child { process: Pid, group: Pid },
     /// A file that is not complete yet.
     File(PathBuf),

@@ -1,4 +1,4 @@
-//! Manages the sources of executables: the files that are packed into mdlec, and their copy in the cache.
+//! Manages the sources of executables: the files that are embedded in mdlec, and their copy in the cache.
 
 use std::fs::{self, DirEntry, File};
 use std::io;
@@ -65,12 +65,12 @@ fn options(target: &str) -> Option<Vec<(&'static str, &'static str)>> {
     Some(options).filter(|options| !options.is_empty())
 }
 
-/// Returns the hash of all packed files.
+/// Returns the hash of all embedded files.
 pub(super) fn hash() -> &'static str {
     embedded::HASH
 }
 
-/// Returns the text of a packed file.
+/// Returns the text of the embedded file `name`.
 pub(super) fn text(name: &str) -> &'static str {
     let file = embedded::FILES.iter().find(|(file, _)| *file == name);
     file.and_then(|(_, contents)| str::from_utf8(contents).ok()).unwrap_or_default()
@@ -84,7 +84,7 @@ pub(super) struct SourcesCopy {
 }
 
 impl SourcesCopy {
-    /// Writes the files that are missing in the cache, and those that differ from the packed files.
+    /// Writes the files that are missing in the cache, and those that differ from the embedded files.
     ///
     /// Unchanged files keep their times, by which cargo recognizes what it has already built. The cache must be locked.
     pub(super) fn unpack(cache: &Cache) -> Result<Self, LinkError> {

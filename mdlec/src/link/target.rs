@@ -129,7 +129,7 @@ pub(super) fn emulator_dependencies(robot: &str, sources: &SourcesCopy) -> Resul
     })
 }
 
-/// Returns the dependencies of a plan for a third-party target, which its manifest selects.
+/// Returns the dependencies of a plan for a third-party target. The target's manifest selects them.
 fn by_path(folder: &Path, crate_name: &str, sources: &SourcesCopy) -> Result<Dependencies, LinkError> {
     let manifest = folder.join("Cargo.toml").canonicalize().map_err(|_| LinkError::NotACrate(folder.to_owned()))?;
     let metadata = read(&manifest, crate_name)?;

@@ -7,7 +7,7 @@ use std::{env, io};
 
 use super::LinkError;
 
-/// Oldest Rust version that compiles the packed sources.
+/// Oldest Rust version that compiles the embedded sources.
 const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
 
 /// Prefixes of environment variables that cargo may read, because the user chooses them. They concern cargo's folders,

@@ -1,5 +1,5 @@
-//! Interface to a robot's alphabet 𝒜 = U ∪ B′, its laws U and its interrupts B′ (paper, Definition 1), for plans that
-//! refer to quarks only by name.
+//! Interface to a robot's alphabet 𝒜 = U ∪ B′, which consists of the laws U and the interrupts B′ (paper, Definition
+//! 1). Plans that refer to quarks only by name use this interface.
 
 use crate::{
     Bits, Comparison, Completes, Control, Interrupt, Law, Meters, MetersPerSecond, Nanos, Output, Radians,
@@ -75,9 +75,9 @@ pub enum Argument<'a> {
     Number(f64),
     /// An `integer`.
     Integer(i64),
-    /// A `count`; [`u64::MAX`] means without end.
+    /// A `count`; [`u64::MAX`] means an unlimited count.
     Count(u64),
-    /// A word of `bits`, in the order in which they are written.
+    /// The bits of a `bits` argument, in the order in which they are written.
     Bits(&'a [bool]),
     /// A `sonar`.
     Sonar(SonarId),
@@ -99,10 +99,10 @@ impl<const N: usize> Bits<N> {
 /// Declares `Alphabet`, `AnyInterrupt`, `AnySignal`, `AnyControl` and `AnyLaw` from the tables of a robot's alphabet,
 /// which `mdlec bind` writes.
 ///
-/// `Output` and `Input` of the robot, and `NAME` and `HASH` of its alphabet, must be in scope. A capability is followed
-/// by the trait that `Output` must implement, if there is one. Limits are in SI units. Each quark is declared by its
-/// name, its type, and a constant function. The function creates the quark from its arguments, and returns `None` if
-/// the arguments fit another signature.
+/// `Output` and `Input` of the robot, and `NAME` and `HASH` of its alphabet, must be in scope. If `Output` must
+/// implement a trait for a capability, the trait follows the capability. Limits are in SI units. Each quark is declared
+/// by its name, its type, and a constant function. The function creates the quark from its arguments, and returns
+/// `None` if the arguments fit another signature.
 #[macro_export]
 macro_rules! alphabet {
     (

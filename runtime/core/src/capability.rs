@@ -12,9 +12,9 @@ pub trait Odometry: Output {
     fn pose(&self) -> Pose;
     /// Returns the measured velocities.
     fn velocity(&self) -> Twist;
-    /// Returns the angle between the walls and the axes of a frame that drift of the heading has caused; `axis` is the
-    /// direction of one of these axes. Returns 0 unless the robot has a better estimate than its odometry, for example
-    /// from a [`crate::Compass`].
+    /// Returns the angle by which drift of the heading has turned a frame away from the walls; `axis` is the direction
+    /// of one of the frame's axes. Returns 0 unless the robot has a better estimate than its odometry, for example from
+    /// a [`crate::Compass`].
     fn drift(&self, _axis: Radians) -> Radians {
         Radians(0.0)
     }
@@ -26,7 +26,8 @@ pub trait Bumpers: Output {
     fn pressed(&self) -> bool;
 }
 
-/// `diff_drive`: two driven wheels, so that an input is a [`Twist`]. Provides the dimensions that laws need.
+/// `diff_drive`: the robot has two driven wheels, so its input is a [`Twist`]. The trait provides the dimensions that
+/// laws need.
 pub trait DiffDrive: Output {
     /// Returns the radius of the smallest circle around the body.
     fn body_radius(&self) -> Meters;
@@ -50,11 +51,11 @@ pub trait DiffDrive: Output {
 /// Steering gains of the laws: the factor `k` between the remaining error and the turn rate (paper, section IV-A).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steering {
-    /// Gain of `rotate`, `turn` and `path`, in rad/s for each radian that is still to turn.
+    /// Gain of `rotate`, `turn` and `path`, in rad/s per radian of the angle that remains.
     pub rotate: f64,
-    /// Gain of `align`, in rad/s for each metre by which the ranges differ.
+    /// Gain of `align`, in rad/s per metre of difference between the ranges.
     pub align: f64,
-    /// Gain of `goAvoid`, in rad/s for each radian between the heading and the chosen direction.
+    /// Gain of `goAvoid`, in rad/s per radian between the heading and the chosen direction.
     pub avoid: f64,
 }
 

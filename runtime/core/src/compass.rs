@@ -21,50 +21,49 @@ const SIDES: [(usize, f64); 2] = [(4, 1.0), (12, -1.0)];
 const ALONG: Radians = Radians::from_degrees(25.0);
 /// Distance, in metres, beyond which walls are ignored.
 const WITHIN: f64 = 1.5;
-/// Minimum value of `RegressionLine::squares`, in square metres, for which a wall on one side alone determines the
+/// Minimum value of `RegressionLine::squares`, in square metres, at which one wall alone is enough to determine the
 /// direction.
 const LONG: f64 = 4.0;
-/// Maximum difference between the slopes of the left and the right wall for which the walls are treated as parallel.
+/// Maximum difference between the slopes of the left and the right wall at which the walls are treated as parallel.
 const PARALLEL: f64 = 0.14;
-/// Maximum difference, in metres, between the ranges of the outer two of three adjacent sonars for which the robot is
+/// Maximum difference, in metres, between the ranges of the outer two of three adjacent sonars at which the robot is
 /// treated as nearly square to the wall.
 const SQUARE: f64 = 0.12;
-/// Maximum difference, in metres, between the range of the middle sonar and the mean range of its two neighbours for
+/// Maximum difference, in metres, between the range of the middle sonar and the mean range of its two neighbours at
 /// which the wall is treated as straight.
 const STRAIGHT: f64 = 0.1;
 
-/// Error, in radians, of a direction that is measured by walls on both sides of the path.
+/// Error, in radians, of a direction that is determined from walls on both sides of the path.
 const BOTH: f64 = 0.026;
-/// Error, in radians, of a direction that is measured by a wall on one side of the path.
+/// Error, in radians, of a direction that is determined from a wall on one side of the path.
 const ONE: f64 = 0.06;
-/// Error, in radians, of a direction that is measured by three pings of a wall.
+/// Error, in radians, of a direction that is determined from three pings of a wall.
 const THREE: f64 = 0.12;
-/// Minimum time, in nanoseconds, between two measurements by three pings.
+/// Minimum time, in nanoseconds, between two measurements from three pings.
 const AGAIN: Nanos = Nanos(1_000_000_000);
 /// Error of the drift, in radians, before any wall is measured.
 const AT_FIRST: f64 = 0.1;
 /// Maximum error of the drift, in radians.
 const UNKNOWN: f64 = 0.35;
-/// Maximum error, in radians, with which the drift is treated as known.
+/// Maximum error, in radians, at which the drift is treated as known.
 const BELIEVED: f64 = 0.3;
 /// Maximum deviation of a measurement from the drift, as a multiple of their combined error. A measurement with a
 /// larger deviation is not from a wall and is rejected.
 const GATE: f64 = 2.0;
-/// Error of a turn by odometry, as a fraction of the angle.
+/// Error of odometry in a turn, as a fraction of the turn's angle.
 const OF_TURNS: f64 = 0.025;
 /// Increase of the squared error of the heading per metre driven, in square radians.
 const OF_WAYS: f64 = 2e-4;
-/// Maximum angle, in radians, between a frame and the axes of odometry for which the frame is treated as aligned with
-/// these axes.
+/// Maximum angle, in radians, between a frame's axes and the axes of odometry at which the two are treated as aligned.
 const ALIGNED: f64 = 0.02;
-/// Maximum angle, in radians, between the first walls and the axes of odometry for which the walls are treated as
+/// Maximum angle, in radians, between the first walls and the axes of odometry at which the walls are treated as
 /// parallel to these axes.
 const ALONG_AXES: f64 = 0.17;
 /// Maximum drift of a frame whose axes are not the axes of odometry. A frame with a larger drift is treated as not
 /// parallel to the walls of the room.
 const MOST: Radians = Radians::from_degrees(20.0);
 
-/// Estimate of the drift of the heading by odometry, from walls at right angles to each other.
+/// Estimate of the drift of the odometry heading, from walls that are parallel or at right angles to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compass {
     /// Direction of the walls in odometry coordinates, in radians; 0 if the heading has not drifted.
@@ -171,7 +170,7 @@ impl Compass {
         self.way
     }
 
-    /// Measures the drift by the walls on the left and on the right of the robot's path.
+    /// Measures the drift from the walls on the left and on the right of the robot's path.
     fn drives(&mut self, pings: &[Pings; SONARS], odometry: Pose, shape: &Shape) {
         let Some(origin) = self.along(pings, odometry) else { return };
         let mut takes = false;
@@ -213,10 +212,10 @@ impl Compass {
         }
     }
 
-    /// Measures the drift with a straight wall from which three adjacent sonars receive echoes, while the middle sonar
-    /// is about square to the wall. Measures nothing while the drift is known more precisely. The first measurement
-    /// must come from another method, because three pings are too few to decide whether the walls of the room are
-    /// parallel to the axes of odometry.
+    /// Measures the drift from a straight wall, whose echoes three adjacent sonars receive while the middle sonar is
+    /// about square to the wall. Measures nothing while the drift is known more precisely. The first measurement must
+    /// come from another method, because three pings are too few to decide whether the walls of the room are parallel
+    /// to the axes of odometry.
     ///
     /// If the robot is square to the wall, the two outer sonars measure equal ranges.
     fn faces(&mut self, pings: &[Pings; SONARS], odometry: Pose, apart: Meters) {

@@ -26,11 +26,11 @@ pub enum Condition<I> {
     And(u32, u32),
     /// Fires when the operand does not fire. Contains the index of the operand.
     Not(u32),
-    /// Fires when the operand fires and was false in an earlier turn of this scope, as a memory records. Contains the
-    /// indices of the memory and of the operand.
+    /// Fires when the operand fires and a memory records that the operand was false in an earlier turn of this scope.
+    /// Contains the indices of the memory and of the operand.
     Rising(u32, u32),
-    /// Fires while a memory is set, which records that an element has ended. Contains the level of the memory's scope
-    /// and the index of the memory.
+    /// Fires while the memory that records the end of an element is set. Contains the level of the memory's scope and
+    /// the index of the memory.
     After(u16, u32),
 }
 
@@ -75,7 +75,7 @@ impl<I> Condition<I> {
         }
     }
 
-    /// Returns, for an OR, the index (from 0) of the first operand that has fired; 0 for any other condition.
+    /// Returns the index, counted from 0, of the first operand of an OR that has fired; 0 for any other condition.
     pub(crate) fn cause<Y, M: Memory>(&self, at: &ConditionValues<'_, I, Y, M>) -> u32
     where
         I: Interrupt<Y>,

@@ -4,7 +4,8 @@
 use crate::fsm::{Bracket, Kind};
 use crate::{Begin, Entries, Follows, Frame, Fsm, Here, Nanometers, Nanos, Output, Slots};
 
-/// Position in a plan: the current atom, the entry of each enclosing scope, and the passes left of each enclosing loop.
+/// Position in a plan: the current atom, the entry of each enclosing scope, and the number of passes that each
+/// enclosing loop has left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cursor<E, P> {
     atom: u32,
@@ -71,8 +72,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         self.frame().map_or(begin, |frame| Begin { frame, ..begin })
     }
 
-    /// Returns the bracket of the enclosing scope of this level; the atom's own bracket if there is no such
-    /// scope, and the plan's bracket when the plan is over.
+    /// Returns the number of the bracket of the enclosing scope at `level`: the number of the atom's own bracket if
+    /// there is no such scope, and of the plan's bracket when the plan is over.
     pub fn scope(&self, fsm: Fsm<'_>, level: u16) -> u32 {
         let own = fsm.atoms.get(self.atom as usize).map_or(0, |atom| atom.scope);
         let mut outwards = fsm.outwards(own);
@@ -97,8 +98,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         })
     }
 
-    /// Returns the brackets that end when the enclosing scope of this level ends: first that scope, then each
-    /// enclosing bracket whose last element has ended; a loop ends with its last pass.
+    /// Returns the brackets that end when the enclosing scope at `level` ends: first that scope's bracket, then each
+    /// bracket whose last element ends with it. A loop ends only with its last pass.
     pub fn ending<'f>(&self, fsm: Fsm<'f>, level: u16) -> impl Iterator<Item = (u32, &'f Bracket)> {
         let mut outwards = fsm.outwards(self.scope(fsm, level));
         let scope = outwards.next();
@@ -160,8 +161,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         }
     }
 
-    /// Makes `atom` current, and restarts every enclosing bracket inside `holder`. If `holder` is `None`, restarts all
-    /// enclosing brackets.
+    /// Makes `atom` current, and restarts every bracket that encloses the atom and is inside `holder`. If `holder` is
+    /// `None`, restarts all brackets that enclose the atom.
     fn open(&mut self, fsm: Fsm<'_>, atom: u32, holder: Option<u32>, t: Nanos) {
         self.atom = atom;
         // If both are empty in generated code, the compiler knows this and removes the table lookup below.

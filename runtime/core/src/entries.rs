@@ -68,7 +68,8 @@ impl<S: AsRef<[Nanos]> + AsMut<[Nanos]>> Entries for S {
 pub struct Here {
     /// Level of the scope whose entry determines the heading.
     pub level: u16,
-    /// Sum of the angles, counter-clockwise, of all `FRAME a` that enclose the atom inside the scope at `level`.
+    /// Sum of the angles, counter-clockwise, of all `FRAME a` that enclose the atom and are inside the scope at
+    /// `level`.
     pub turned: Radians,
 }
 

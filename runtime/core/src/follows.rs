@@ -4,10 +4,10 @@
 use crate::Fsm;
 use crate::fsm::Kind;
 
-/// Successor of a scope that depends on no loop and is therefore known before the plan runs.
+/// A successor of a scope that is known before the plan runs, because it depends on no loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Follows {
-    /// Atom that becomes current; the number of atoms when the plan is over.
+    /// Index of the atom that becomes current; the number of atoms if the plan is then over.
     pub atom: u32,
     /// Level of the outermost scope that is entered with the atom.
     pub from: u16,

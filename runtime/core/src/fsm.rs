@@ -38,11 +38,11 @@ impl<'a> Fsm<'a> {
 /// A scope or a loop, and the atoms inside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bracket {
-    /// Index of the first atom of the bracket, in the order of the plan's text.
+    /// Kind of the bracket, with the values that only this kind has.
     pub kind: Kind,
-    /// Index of the last atom of the bracket, in the order of the plan's text.
+    /// Index of the first atom of the bracket, in the order of the plan's text.
     pub first: u32,
-    /// Number of the last atom of the bracket, as written, counted from 0.
+    /// Index of the last atom of the bracket, in the order of the plan's text.
     pub last: u32,
     /// Number of the enclosing bracket; the plan's own bracket is its own parent.
     pub parent: u32,
@@ -51,13 +51,13 @@ pub struct Bracket {
 /// Kind of a bracket: a scope or a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A closed string: an atom, a behavior or a plan. Its interrupt leads from each of its atoms to the
-    /// element after the string.
+    /// A scope, which the paper calls a closed string: an atom, a behavior or a plan. Its interrupt leads from each of
+    /// its atoms to the element after the string.
     Scope {
         /// Number of enclosing scopes.
         level: u16,
     },
-    /// A loop: an open string that is run several times (the paper's counter c(t)).
+    /// A loop, which is an open string that is run several times (the paper's counter c(t)).
     Loop {
         /// Total number of passes; 0 for a loop without end.
         times: u64,

@@ -1,10 +1,9 @@
 //! Runtime of every plan: the state machine of Algorithm 1, the traits of a kinetic state machine, quarks, units and
 //! time.
 //!
-//! To implement a robot: [`Robot`], [`Output`] and the traits of [`capability`]. To implement a quark:
-//! [`Interrupt`], [`Control`], [`Law`] and [`Completes`]. For generated code and its callers: [`fsm`],
-//! [`Cursor`], [`Plan`] and [`Machine`], whose turns [`trace`] formats. For programs that show text to people:
-//! [`Printable`].
+//! A robot implements [`Robot`], [`Output`] and the traits of [`capability`]. A quark implements [`Interrupt`], or
+//! [`Control`], [`Law`] and [`Completes`]. Generated code and its callers use [`fsm`], [`Cursor`], [`Plan`] and
+//! [`Machine`]; [`trace`] formats the turns of a machine. Programs that show text to people use [`Printable`].
 //!
 //! This crate runs in a robot's control loop: it does not allocate, has no unsafe code and cannot panic.
 #![no_std]

@@ -22,7 +22,7 @@ pub struct Transition {
     pub to: u64,
 }
 
-/// Observer of a plan, which is called for every transition, in order.
+/// Observer of a running plan. The machine calls the observer for every transition, in order.
 pub trait Watch {
     /// `false` if the observer ignores its arguments; the state numbers are then not computed.
     const LOOKS: bool = true;
@@ -121,8 +121,8 @@ impl<P: Plan> Machine<P> {
         Turn::Over
     }
 
-    /// Leaves the scope that ends, and enters the atom that follows. Returns `true` if no atom follows, so that the
-    /// plan is over.
+    /// Leaves the scope that ends, and enters the atom that follows. Returns `true` if no atom follows; the plan is
+    /// then over.
     ///
     /// The function is inlined: a plan whose generated code contains the successor then enters it without a table
     /// lookup.

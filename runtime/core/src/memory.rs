@@ -48,7 +48,7 @@ pub struct MarkRow {
     pub facts: u32,
 }
 
-/// A memory of a label that `after` reads.
+/// A memory that belongs to a label and that `after` reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fact {
     /// Number of the memory, in the row that [`MarkRow::level`] gives.

@@ -3,8 +3,8 @@
 
 use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, Meeting, ModuleRead, Nanos, Output, Slots, Source, Words};
 
-/// Conditions and laws of a plan for one robot, with the tables of its machine: emitted by `mdlec`, or loaded from
-/// text.
+/// Conditions and laws of one robot's plan, with the tables of the plan's machine. `mdlec` emits a plan as code, or a
+/// program loads it from text.
 ///
 /// A plan does not determine the order of atoms: [`Cursor`] does, or [`Fsm::follows`] in advance.
 pub trait Plan {

@@ -5,16 +5,16 @@ use crate::{Meters, MetersPerSecond, Radians, RadiansPerSecond};
 /// A place and a heading in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pose {
-    /// Coordinate along the first axis, in metres.
+    /// Coordinate along the x axis, in metres.
     pub x: Meters,
-    /// Coordinate along the second axis, which points to the left of the first, in metres.
+    /// Coordinate along the y axis, which points to the left of the x axis, in metres.
     pub y: Meters,
-    /// Heading, counter-clockwise from the first axis.
+    /// Heading, counter-clockwise from the x axis.
     pub theta: Radians,
 }
 
 impl Pose {
-    /// The origin, heading along the first axis.
+    /// The origin, with the heading along the x axis.
     pub const ORIGIN: Self = Self { x: Meters(0.0), y: Meters(0.0), theta: Radians(0.0) };
 
     /// Returns the distance to the position of `other`.

@@ -1,10 +1,10 @@
-//! Displays untrusted text safely: no character of it can move the cursor, colour the terminal or reverse the direction
-//! of text.
+//! Displays untrusted text safely, so that none of its characters can move the cursor, colour the terminal or reverse
+//! the direction of text.
 
 use core::fmt::{self, Write};
 
-/// A text that is displayed on one line, with each character that [is not printable](is_printable) replaced by its
-/// number: `U+001B`.
+/// A text that is displayed on one line. Each character that [is not printable](is_printable) is replaced by its code
+/// point, as in `U+001B`.
 ///
 /// Widths and precisions of format strings have no effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,7 +27,7 @@ impl<T: fmt::Display> fmt::Display for PrintableLines<T> {
     }
 }
 
-/// Returns `true` if a character is visible by itself, or changes its neighbour as an accent does.
+/// Returns `true` if a character is visible by itself, or modifies the character next to it, as an accent does.
 ///
 /// These characters are not printable: control characters (`Cc`), separators of lines and paragraphs (`Zl`, `Zp`),
 /// characters that reverse text, join it, or are invisible (`Cf`, except the signs of Arabic, Syriac and Kaithi that
@@ -54,7 +54,7 @@ pub const fn is_printable(letter: char) -> bool {
     )
 }
 
-/// Writer of text that replaces each character for which `is_kept` returns `false` by its number.
+/// A writer that replaces each character for which `is_kept` returns `false` by the character's code point.
 struct Replacing<'a, 'f, K> {
     to: &'a mut fmt::Formatter<'f>,
     is_kept: K,

@@ -1,5 +1,5 @@
-//! Quarks as code: interrupts, control laws and their completion (paper, Definition 1; docs/src/reference/semantics.md,
-//! 1 and 4).
+//! Rust representation of quarks: interrupts, control laws and their completion (paper, Definition 1;
+//! docs/src/reference/semantics.md, 1 and 4).
 
 use crate::{Frame, Measured, Nanos, Radians};
 
@@ -9,9 +9,9 @@ pub trait Interrupt<Y: ?Sized> {
     /// fired.
     fn fired(&self, y: &Y) -> bool;
 
-    /// Returns `true` if the interrupt has fired, given the report `stalled` of the law of the previous turn
-    /// ([`Law::stalled`]). For `stuck`, this is called instead of [`Interrupt::fired`]; other interrupts ignore the
-    /// report.
+    /// Returns `true` if the interrupt has fired. `stalled` is the time for which the law of the previous turn has made
+    /// no progress ([`Law::stalled`]). For `stuck`, this function is called instead of [`Interrupt::fired`]; other
+    /// interrupts ignore `stalled`.
     #[inline(always)]
     fn fired_during(&self, y: &Y, _stalled: Option<Nanos>) -> bool {
         self.fired(y)

@@ -79,8 +79,8 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
         guard.condition.fired(&reading(&self.table, &self.memory, guard, cursor, y, t), 0)
     }
 
-    /// Records, for `after`, the cause for which a scope ends and the elements that end with it. Clears the facts of
-    /// the elements inside the scope.
+    /// Records, for `after`, which elements end and the cause of their end. Clears the facts of the elements inside the
+    /// scope that ends.
     fn record(&mut self, cursor: &Cursor<E, P>, cause: Cause, y: &OutputOf<T>, t: Nanos) {
         let Self { table, memory, .. } = self;
         let (fsm, marks, facts) = (table.fsm(), table.marks(), table.facts());

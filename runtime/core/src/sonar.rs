@@ -59,8 +59,8 @@ pub struct Mount {
 }
 
 impl Mount {
-    /// Returns the mount of a transducer at `x` metres ahead and `y` metres to the left of the centre, which
-    /// faces along `bearing` and represents `sonar`.
+    /// Returns the mount of a transducer that represents `sonar`, faces along `bearing`, and is `x` metres ahead of the
+    /// robot's centre and `y` metres to the left of it.
     #[must_use]
     pub fn of(x: f64, y: f64, bearing: Radians, sonar: SonarId) -> Self {
         let (sin, cos) = libm::sincos(bearing.0);
@@ -117,7 +117,7 @@ impl Pings {
 mod tests {
     use super::*;
 
-    /// Returns pings with these ranges, in the order in which they are taken.
+    /// Returns one ping for each range. The ranges are in the order in which the pings are taken.
     fn pings(ranges: &[Option<f64>]) -> Pings {
         let mut pings = Pings::default();
         for range in ranges {

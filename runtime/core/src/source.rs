@@ -64,7 +64,7 @@ pub struct BracketWords<'a> {
     pub count: u32,
 }
 
-/// Text and line of an operand, which is a part of a condition that AND and OR join.
+/// Text and line of an operand: one of the parts that AND and OR join to a condition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OperandWords<'a> {
     /// Condition text of the operand, as traces show it.

@@ -1,7 +1,7 @@
 //! Stores many short texts as one joined text, which rustc compiles in a hundredth of the time that it needs for a list
 //! of texts.
 
-/// List of texts that are constants of an executable and are found by number.
+/// A list of constant texts, each of which is found by its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TextList<'a> {
     joined: &'a str,

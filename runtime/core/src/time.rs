@@ -10,7 +10,7 @@ impl Nanos {
     /// The latest time: 584 years, which no plan reaches.
     pub const MAX: Self = Self(u64::MAX);
 
-    /// Returns the time from `earlier` to this one; zero if `earlier` is later.
+    /// Returns the time from `earlier` to this time; zero if `earlier` is later.
     #[must_use]
     pub const fn since(self, earlier: Self) -> Self {
         Self(self.0.saturating_sub(earlier.0))

@@ -3,7 +3,7 @@
 
 use crate::Meters;
 
-/// A length of path driven, in nanometres: a reading of an odometer, or the difference of two.
+/// Length of a driven path, in nanometres: a reading of an odometer, or the difference of two readings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
 pub struct Nanometers(pub u64);
 

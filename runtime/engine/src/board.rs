@@ -13,7 +13,7 @@ use crate::module::{About, Declared, Ports, Refusal, ValueSource};
 #[derive(Debug, Default)]
 pub struct Board {
     posts: Vec<Post>,
-    /// Attributes that had a value with NaN refused for the first time since the last call of [`Board::newly_refused`].
+    /// Attributes whose first value with NaN was rejected since the last call of [`Board::newly_refused`].
     refused: Vec<AttributeName>,
 }
 
@@ -26,7 +26,7 @@ pub struct Post {
     pub about: About,
     /// The value that was published last; `None` before the first publication.
     pub reading: Option<Reading>,
-    /// Latency that the module declares for the time between two of its exchanges.
+    /// Latency of the module: the declared time between two of its exchanges.
     pub latency: Nanos,
     /// Number of values that were not published because they contain NaN.
     pub refused: u64,
@@ -90,8 +90,8 @@ impl Board {
         self.posts.iter().position(|post| &*post.name.module == module).unwrap_or(self.posts.len())
     }
 
-    /// Adds an attribute whose module is not loaded in this engine, because it belongs to another robot or to a
-    /// recorded run that is being replayed. Replaces an earlier attribute with this name.
+    /// Adds an attribute whose module is not loaded in this engine, because the attribute belongs to another robot or
+    /// to a recorded run that is being replayed. Replaces an earlier attribute with this name.
     pub(crate) fn restore(&mut self, name: AttributeName, kind: AttributeKind) {
         self.forget(&name);
         let unit = kind.quantity().and_then(ParameterKind::base_unit);
@@ -130,7 +130,7 @@ impl Board {
     }
 
     /// Publishes the values of a module whose attributes begin at position `first`; calls `published` with the position
-    /// and the value of each.
+    /// of each published value, and the value.
     pub(crate) fn publish(
         &mut self,
         first: usize,
@@ -159,7 +159,7 @@ impl Board {
         }
     }
 
-    /// Returns the attributes that had a value with NaN refused for the first time since the last call.
+    /// Returns the attributes whose first value with NaN was rejected since the last call.
     pub(crate) fn newly_refused(&mut self) -> impl Iterator<Item = AttributeName> {
         self.refused.drain(..)
     }

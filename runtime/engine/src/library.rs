@@ -1,4 +1,4 @@
-//! The modules of a program: functions that create the modules for each run.
+//! The modules of a program, as functions that create the modules for each run.
 
 use std::fmt;
 use std::sync::Arc;
@@ -39,8 +39,8 @@ impl<Y> Library<Y> {
         self.makers.push((name.to_owned(), Arc::new(move |_| Candidate::background(&own, &make))));
     }
 
-    /// Adds a background module with this name whose values a child process computes; `/bin/sh` starts the process with
-    /// this command line. See [`Candidate::process`].
+    /// Adds a background module with the name `name`. A child process, which `/bin/sh` starts with the command line
+    /// `command`, computes the module's values. See [`Candidate::process`].
     pub fn process(&mut self, name: &str, command: &str) {
         let (own, command) = (name.to_owned(), command.to_owned());
         self.makers.push((name.to_owned(), Arc::new(move |request| Candidate::process(&own, &command, request))));
@@ -66,12 +66,12 @@ impl<Y> Library<Y> {
         if is_taken { Err(Refusal::NameTaken(name.to_owned())) } else { Ok(()) }
     }
 
-    /// Creates the modules; stops if `request` is made.
+    /// Creates the modules; stops early if `request` asks the run to end.
     pub(crate) fn candidates(&self, request: &StopRequest) -> impl Iterator<Item = Result<Candidate<Y>, Refusal>> {
         self.makers.iter().map(move |(_, make)| make(request))
     }
 
-    /// Creates the module with this name; stops if `request` is made.
+    /// Creates the module with this name; stops early if `request` asks the run to end.
     ///
     /// # Errors
     /// Fails if there is no such module, or if it cannot be created.

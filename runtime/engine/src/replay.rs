@@ -1,5 +1,5 @@
 //! Replays recorded runs. For a replay, an engine needs the robot's outputs and the changes that a [`History`] has
-//! collected. It repeats these changes without modules, threads or users.
+//! collected. The engine repeats these changes without modules, threads or users.
 
 mod history;
 mod repeats;

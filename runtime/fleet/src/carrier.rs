@@ -31,7 +31,7 @@ const LOOK: Duration = Duration::from_millis(100);
 pub(crate) struct Carrier {
     name: String,
     router: SocketAddr,
-    /// File that names the router.
+    /// Name of the link file, which names the router.
     file: String,
     endpoint: Arc<Endpoint>,
     outbox: Arc<Outbox>,

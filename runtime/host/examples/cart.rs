@@ -1,5 +1,5 @@
-//! A target and a plan in plain Rust: a cart that shuttles on a track. For a real robot, an author writes the first
-//! half of such a file, and `mdlec` generates the second half.
+//! An example of a target and a plan in plain Rust: a cart that shuttles on a track. For a real robot, an author writes
+//! the first half of such a file, and `mdlec` generates the second half.
 //!
 //! Run it with `cargo run -p mdle-host --example cart -- --speed max --timeout 20`. The tests of this package run the
 //! program.

@@ -11,7 +11,7 @@ use crate::{Program, Quantity, paths, required, views};
 
 /// Minimum period of a turn; a turn must be long enough for the exchange with the robot.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
-/// Maximum period of a turn; with less than a command per minute, a robot is not controlled.
+/// Maximum period of a turn; a robot that gets less than one command per minute is not under control.
 const PERIOD_MOST: Duration = Duration::from_secs(60);
 /// Maximum timeout, about 31 years: far below the limit of nanoseconds in 64 bits.
 const TIMEOUT_MOST: Duration = Duration::from_secs(1_000_000_000);
@@ -42,11 +42,11 @@ pub(crate) struct SharedOptions {
     pub(crate) timeout: Option<Duration>,
     /// Maximum number of turns, at least 1; the run is stopped after this number.
     pub(crate) turns: Option<u64>,
-    /// File of the run log.
+    /// Path of the run log.
     pub(crate) log: Option<PathBuf>,
     /// `true` if the run continues when its log cannot be written.
     pub(crate) log_best_effort: bool,
-    /// File of the recorded path.
+    /// Path of the file in which the driven path is recorded.
     pub(crate) path: Option<PathBuf>,
 }
 

@@ -192,8 +192,8 @@ impl Outlet {
         }
     }
 
-    /// Waits until all text is written, for at most the time that the run's phase permits. Does not wait while a robot
-    /// is being driven.
+    /// Waits until all text is written, but at most as long as the run's phase permits. Does not wait while a robot is
+    /// being driven.
     fn drain(&mut self) -> io::Result<()> {
         let shared = Arc::clone(&self.shared);
         let begun = Instant::now();

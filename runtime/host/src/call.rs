@@ -17,7 +17,7 @@ pub struct Call {
     pub read: Vec<PathBuf>,
     /// Data of the plan that a record contains.
     pub recorded: RecordedPlan,
-    /// Name of a path that the run records; its file may be missing at the start.
+    /// Name of a path that the run itself records; the path's file need not exist when the run starts.
     pub later_path: Option<String>,
 }
 

@@ -46,7 +46,7 @@ pub(crate) trait Drive {
     fn exact(&self) -> Option<Exact<'_>>;
     /// Starts recording the changes that [`Drive::take_changes`] returns; called before the first turn.
     fn record(&mut self);
-    /// Removes and returns the changes that influenced the last turn, besides its output.
+    /// Removes and returns the changes, other than the robot's output, that influenced the last turn.
     fn take_changes(&mut self) -> Vec<RecordedChange>;
     /// Makes turn `number` with the last output, which was read at time `t`. The first turn begins the plan.
     ///
@@ -98,7 +98,7 @@ pub(crate) struct Exact<'y> {
     pub(crate) y: &'y Sensed,
     /// Input that the plan requested.
     pub(crate) asked: Twist,
-    /// Input that the robot is sent.
+    /// Input that is sent to the robot.
     pub(crate) sent: Twist,
 }
 

@@ -145,7 +145,7 @@ where
         }
     }
 
-    /// Removes and returns the changes that influenced the last turn, besides its output.
+    /// Removes and returns the changes, other than the robot's output, that influenced the last turn.
     pub(crate) fn take_changes(&mut self) -> Vec<RecordedChange> {
         let mut changes = self.pilot.take_changes();
         changes.extend(self.supervisor_mut().map(Supervisor::take_changes).unwrap_or_default());

@@ -1,8 +1,8 @@
-//! Counts how often each safety rule holds the robot back, so that a report shows only the first times.
+//! Counts how often each safety rule has held the robot back, so that a report shows only the first few times.
 
 use mdle_runtime::Nanos;
 
-/// Maximum number of times that a report shows a rule holding the robot, until the rule pauses for [`PAUSE`].
+/// Number of times that a report shows that a rule holds the robot, before the rule has paused for [`PAUSE`].
 const REPORTED: u32 = 3;
 /// Time after which a report shows a rule again. It is counted from the last time at which the rule began to hold the
 /// robot.
@@ -26,8 +26,8 @@ struct HoldsOfRule {
 }
 
 impl Holds {
-    /// Records that a rule begins to hold the robot at time `t`. Returns the text to append to the report's line about
-    /// this; `None` if the report shows no line.
+    /// Records that a rule begins to hold the robot at time `t`. Returns the text that the report appends to its line
+    /// about this hold; `None` if the report shows no line.
     pub(crate) fn begins(&mut self, rule: &str, t: Nanos) -> Option<&'static str> {
         let known = self.rules.iter().position(|holds| holds.rule == rule);
         self.last = known.unwrap_or(self.rules.len());

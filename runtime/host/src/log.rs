@@ -94,7 +94,7 @@ impl<'p> UnchangedFile<'p> {
         Ok(Log { file: self.emptied(patience)?, prompt })
     }
 
-    /// Truncates the file and returns a writer to it; from now on the file is kept.
+    /// Truncates the file and returns a writer to it; from now on, the file is not removed any more.
     ///
     /// # Errors
     /// Fails if the file cannot be truncated.
@@ -110,7 +110,7 @@ impl<'p> UnchangedFile<'p> {
         Outlet::open(RecordFile::new(self.cut()?), Keeps::All, patience)
     }
 
-    /// Truncates the file; from now on the file is kept.
+    /// Truncates the file and returns it; from now on, the file is not removed any more.
     fn cut(self) -> io::Result<File> {
         let Self { file, new } = self;
         // A device or a pipe has no length.

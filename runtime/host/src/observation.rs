@@ -1,4 +1,4 @@
-//! Functions of a target for observing its runs and for starting them over.
+//! Functions of a target with which its runs are observed and started over.
 
 use std::fmt;
 use std::time::Duration;

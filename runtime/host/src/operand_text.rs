@@ -16,8 +16,8 @@ enum OperandToken<'a> {
     Number(Option<Quantity>, f64),
 }
 
-/// Returns `true` if `text` means the operand: it may have the operand's canonical form, the form in the plan's text,
-/// or differ from these in units and spaces.
+/// Returns `true` if `text` means the operand. The text may have the operand's canonical form or the form in the plan's
+/// text, and may differ from these forms in units and spaces.
 #[must_use]
 pub fn is_operand(text: &str, operand: &OperandWords<'_>) -> bool {
     let unit = operand.values.first().map_or("", |signal| signal.unit);

@@ -21,7 +21,7 @@ use crate::files::read_file;
 use crate::output_format::output_format;
 use crate::target_options::TargetOptions;
 
-/// Maximum size of a path file, in bytes; with ten rows per second, this is about eleven hours.
+/// Maximum size of a path file, in bytes; at ten rows per second, such a file contains about eleven hours.
 const LARGEST: u64 = 10_000_000;
 
 /// Adds the options of a target that replays paths to `command`.

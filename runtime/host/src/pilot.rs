@@ -68,8 +68,8 @@ pub trait Pilot {
     /// run.
     fn record(&mut self) {}
 
-    /// Removes and returns the changes that influenced the last turn, besides the robot's output, in order. With these
-    /// changes and the outputs, the run can be repeated.
+    /// Removes and returns the changes, other than the robot's output, that influenced the last turn, in order. With
+    /// these changes and the outputs, the run can be repeated.
     fn take_changes(&mut self) -> Vec<RecordedChange> {
         Vec::new()
     }
@@ -106,7 +106,7 @@ pub enum AfterPlan {
     Fails(String),
 }
 
-/// Conditions of a run for its pilot and its supervisor.
+/// Terms of a run, on which its pilot and its supervisor depend.
 #[derive(Debug, Clone)]
 pub struct RunTerms {
     /// Source of the robot's time.

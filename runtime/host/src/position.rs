@@ -54,7 +54,7 @@ pub(crate) trait Position {
     fn atom(&self) -> Option<u32>;
     /// Returns the frame of the current atom, if a `FRAME here` encloses the atom.
     fn frame(&self) -> Option<Frame>;
-    /// Returns the bracket of the enclosing scope at this level.
+    /// Returns the number of the bracket of the enclosing scope at this level.
     fn scope(&self, level: u16) -> u32;
     /// Returns the time, at time `t`, since the enclosing scope of this level was entered.
     fn since(&self, level: u16, t: Nanos) -> Nanos;

@@ -5,7 +5,8 @@
 pub struct Program<'a> {
     /// Name of the plan, which `--help` shows.
     pub plan: &'a str,
-    /// Answer to `--version`, which follows the plan's name. If it is empty, the executable has no option `--version`.
+    /// Text that `--version` prints after the plan's name. If the text is empty, the executable has no option
+    /// `--version`.
     pub version: &'a str,
 }
 

@@ -31,7 +31,7 @@ pub(crate) struct RecordWriter<W = Outlet> {
     begin: Begin,
     /// Output of the turn, the input that the plan requested, and the input that is sent.
     exact: Option<(Sensed, Twist, Twist)>,
-    /// Changes that influenced the turn, besides its output.
+    /// Changes, other than the robot's output, that influenced the turn.
     changes: Vec<RecordedChange>,
     has_begun: bool,
     /// `true` if each second of the run is written to the file immediately; `false` at the fastest pace.
@@ -43,7 +43,7 @@ pub(crate) struct RecordWriter<W = Outlet> {
     intervention: String,
 }
 
-/// A turn, without the results of a plan.
+/// The number, time and plan of a turn, without results of the plan.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct UnmadeTurn<'a> {
     /// Number of the turn, counted from 0.
@@ -65,7 +65,7 @@ impl<W: Write> RecordWriter<W> {
         Self { file, frames, begin, exact: None, changes, has_begun: false, prompt, flushed, bytes, intervention }
     }
 
-    /// Stores the output and the input of a turn, and the changes that influenced the turn besides the output.
+    /// Stores the output and the input of a turn, and the other changes that influenced the turn.
     pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<RecordedChange>) {
         self.exact = exact.map(|Exact { y, asked, sent }| (*y, asked, sent));
         self.changes = changes;

@@ -44,7 +44,7 @@ pub(crate) struct Over {
     pub(crate) by: String,
     /// Texts of the operands that fired.
     pub(crate) operands: Vec<String>,
-    /// Cause of the end, as a report shows it but without measured values.
+    /// Cause of the end as a report shows it, but without measured values.
     pub(crate) words: String,
     /// Bracket of the scope that ended.
     pub(crate) bracket: u32,
@@ -122,7 +122,7 @@ impl<'a> ReportWriter<'a> {
 
     /// Reports the supervisor's intervention in the turn at time `t`, unless it is the same as in the previous turn. A
     /// rule that limits inputs is reported only once, because it may start and stop with every turn. A rule that holds
-    /// the robot repeatedly is reported only the first times.
+    /// the robot repeatedly is reported only for the first few holds.
     pub(crate) fn supervised(&mut self, t: Nanos, supervised: &Supervised) {
         let intervention = supervised.intervention();
         if let Some(limit) = intervention.filter(|it| it.verdict == Verdict::Limited)

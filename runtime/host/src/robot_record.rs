@@ -26,7 +26,7 @@ pub struct RobotTurn<'a> {
     pub t: Nanos,
     /// The output.
     pub y: &'a Sensed,
-    /// The input that the robot is sent after the turn.
+    /// The input that is sent to the robot after the turn.
     pub sent: Twist,
     /// Source of the input.
     pub kind: Turn<()>,
@@ -38,7 +38,7 @@ pub struct RobotTurn<'a> {
     pub begins: Option<&'a str>,
     /// Transitions of the turn.
     pub transitions: &'a Transitions,
-    /// Changes that influenced the turn, besides its output.
+    /// Changes, other than the output, that influenced the turn.
     pub changes: Vec<RecordedChange>,
 }
 

@@ -33,9 +33,9 @@ pub(crate) enum RunEnd {
     Otherwise(String),
     /// The last plan has ended before the pilot's goal; contains the reason.
     Failed(String),
-    /// The plan had not ended at the time limit, which is contained here.
+    /// The plan had not ended at the time limit; contains this limit.
     Timeout(Duration),
-    /// The plan had not ended after the maximum number of turns, which is contained here.
+    /// The plan had not ended after the maximum number of turns; contains this number.
     Turns(u64),
     /// The supervisor of the run requested the end.
     Quit,

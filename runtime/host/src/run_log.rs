@@ -48,7 +48,7 @@ impl RunLog {
         Self { format, is_best_effort, has_ended: false, t: Nanos::ZERO, message: None }
     }
 
-    /// Returns `true` if the log is a record. For a record, more data of a turn are needed than an entry contains.
+    /// Returns `true` if the log is a record. A record needs more data of a turn than an entry contains.
     pub(crate) fn is_record(&self) -> bool {
         match self.format {
             Format::Lines(_) => false,
@@ -56,7 +56,7 @@ impl RunLog {
         }
     }
 
-    /// Stores the output and the input of a turn, and the changes that influenced the turn besides the output.
+    /// Stores the output and the input of a turn, and the other changes that influenced the turn.
     pub(crate) fn take(&mut self, exact: Option<Exact<'_>>, changes: Vec<RecordedChange>) {
         match &mut self.format {
             Format::Lines(_) => {}

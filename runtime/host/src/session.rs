@@ -56,7 +56,8 @@ where
     }
 }
 
-/// Reads the paths that the plan replays, and the causes by which the plan must end. The path `later` may be missing.
+/// Reads the paths that the plan replays, and the causes by which the plan must end. The file of the path `later` may
+/// be missing.
 fn prepared(
     target: &TargetOptions,
     matches: &ArgMatches,

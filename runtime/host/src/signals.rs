@@ -79,8 +79,7 @@ impl ProcessSignal {
         self.0 >= REAL_TIME.0
     }
 
-    /// Returns `true` if the program continues to ignore this signal when the signal was ignored at the program's
-    /// start.
+    /// Returns `true` if the program continues to ignore a signal that was already ignored when the program started.
     ///
     /// `nohup` requires this for SIGHUP. However, a script's shell starts background jobs with SIGINT and SIGQUIT
     /// ignored, although a person who presses Ctrl-C wants the robot to stop; the program therefore handles these two

@@ -29,7 +29,7 @@ impl StopRequest {
         self.0.load(Ordering::SeqCst) != 0
     }
 
-    /// Waits for the time `time`, or until the request has been made.
+    /// Waits for `time`, or until the request has been made.
     pub fn wait(&self, time: Duration) {
         let start = Instant::now();
         while !self.is_made() {

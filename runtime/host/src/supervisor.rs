@@ -11,11 +11,11 @@ use crate::standing::{RunCourse, standing};
 use crate::timing::Timing;
 use crate::{Lateness, Pace, Pilot, PlanPosition, RobotSettings, RunTerms};
 
-/// Decides which input a robot is sent, and acts between the turns that the pilot `B` makes.
+/// Decides which input is sent to a robot, and acts between the turns that the pilot `B` makes.
 ///
 /// The supervisor runs on the thread that drives the robot, so a real robot waits for it.
 pub trait Supervisor<B: Pilot> {
-    /// Returns the input that the robot is sent instead of `asked`, which the plan has requested in the turn with
+    /// Returns the input that is sent to the robot instead of `asked`, which the plan has requested in the turn with
     /// output `y` at time `t`. All inputs are passed to this function, including the null inputs at the end of a run
     /// and in a turn that reaches the limit of transitions; the only exception is the input before the first output.
     fn filter(&mut self, asked: PilotInput<B>, _y: &PilotOutput<B>, _t: Nanos) -> PilotInput<B> {
@@ -87,7 +87,7 @@ pub struct LimitedQuantity {
     pub unit: &'static str,
     /// Value in the input that the plan requested.
     pub asked: f64,
-    /// Value in the input that the robot is sent.
+    /// Value in the input that is sent to the robot.
     pub sent: f64,
 }
 
@@ -154,7 +154,7 @@ pub struct Break<'b, B: Pilot> {
     pub t: Nanos,
     /// Output of the last turn; at the break before the first turn, the output for the first turn.
     pub y: &'b PilotOutput<B>,
-    /// Input that the robot will be sent next.
+    /// Input that will be sent to the robot next.
     pub input: &'b PilotInput<B>,
     /// `true` if the plan has ended, so that this is the last break.
     pub is_over: bool,
@@ -209,7 +209,7 @@ pub struct Supervision<'s, B: Pilot> {
     pub session: Option<BorrowedFd<'s>>,
 }
 
-/// A function that creates the supervisor of a run, given the conditions of the run.
+/// A function that creates the supervisor of a run, given the terms of the run.
 pub type MakeSupervisor<'s, B> = dyn Fn(&RunTerms) -> Box<dyn Supervisor<B> + 's> + Sync + 's;
 
 impl<B: Pilot> Clone for Supervision<'_, B> {

@@ -55,7 +55,7 @@ pub trait Target {
         Ok(())
     }
 
-    /// Opens the robot, which does not move yet.
+    /// Connects to the robot, which does not move yet.
     ///
     /// From this call on, signals no longer end the program, but make `request`. A robot that opens at once can ignore
     /// `request`: the host stops the robot before its first turn. A robot that takes longer checks `request` between

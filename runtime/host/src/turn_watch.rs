@@ -48,7 +48,7 @@ pub(crate) struct WatchedRun {
 type Work = Arc<Mutex<Option<Arc<str>>>>;
 
 thread_local! {
-    /// Work of the turn that this thread is making.
+    /// The module at work in the turn that this thread is making.
     static WORK: RefCell<Option<Work>> = const { RefCell::new(None) };
 }
 

@@ -70,15 +70,15 @@ pub(crate) enum ParsedCommand {
 /// The arguments of `mdle run`.
 #[derive(Debug, PartialEq)]
 pub(crate) struct RunArguments {
-    /// File of the plan; `-` means standard input.
+    /// Path of the plan's file; `-` means standard input.
     pub(crate) file: PathBuf,
     /// Name or folder of the target; `None` for the target that the `mdle.toml` beside the plan names.
     pub(crate) target: Option<String>,
     /// Name of the plan to run, for a file with several plans.
     pub(crate) plan: Option<String>,
-    /// File of the safety rules.
+    /// Path of the safety file.
     pub(crate) safety: Option<PathBuf>,
-    /// File of the link to other robots.
+    /// Path of the link file, which names the other robots.
     pub(crate) link: Option<PathBuf>,
     /// Name of the path that the run replaces with the way back after each `path` and `Follow`; `None` if no path is
     /// recorded.
@@ -113,7 +113,7 @@ impl RunArguments {
 /// The options of a session.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct SessionOptions {
-    /// File of commands; `None` for the terminal or a pipe.
+    /// Path of the command file; `None` to read commands from the terminal or from a pipe.
     pub(crate) commands: Option<PathBuf>,
     /// `true` if the first error ends the session.
     pub(crate) stops_at_errors: bool,

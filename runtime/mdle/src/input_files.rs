@@ -15,11 +15,11 @@ use crate::failure;
 pub(crate) struct InputFiles {
     /// Path of the scenario's or the plan's own file.
     pub(crate) path: PathBuf,
-    /// Contents of the files that have been read; inside an executable, contents of all files.
+    /// Contents of the files that have been read so far; inside an executable, contents of all files.
     contents: RefCell<BTreeMap<PathBuf, Vec<u8>>>,
     /// Texts of the files inside an executable, for the plans that use them.
     texts: OnceCell<Unsaved>,
-    /// `true` for copies inside an executable. In this case, no other file is read.
+    /// `true` if the files are copies inside an executable. In this case, no other file is read.
     are_inside: bool,
 }
 
@@ -95,7 +95,7 @@ impl InputFiles {
     }
 
     /// Stores the files of a plan that has been compiled, and prints its diagnostics. Does nothing for a plan inside an
-    /// executable, because both were done when the executable was built.
+    /// executable, because both steps were done when the executable was built.
     pub(crate) fn compiled(&self, input: &Input, diagnostics: &[Diagnostic]) {
         if !self.are_inside {
             let files = input.files().map(Path::to_owned).zip(input.texts().map(|text| text.as_bytes().to_vec()));

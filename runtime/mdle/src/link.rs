@@ -98,7 +98,7 @@ impl LinkFile {
         &self.path
     }
 
-    /// Returns the name of the plan that is for this robot in a group's plan.
+    /// Returns the name of this robot's plan, which is one of the plans of the group's robots.
     ///
     /// # Errors
     /// Fails if the robot is not in the group.

@@ -38,7 +38,7 @@ const FILES: [(&str, &str); 5] = [
 pub(crate) struct NewModule {
     /// Name of the module and of its folder.
     pub(crate) name: String,
-    /// Folder of a checkout of mdle; `None` for `../mdle`, relative to the new folder.
+    /// Path of a checkout of mdle; `None` for `../mdle`, relative to the new folder.
     pub(crate) checkout: Option<PathBuf>,
 }
 

@@ -106,7 +106,7 @@ fn opened(path: &Path) -> io::Result<Box<dyn Read>> {
 /// The plan with which a record is replayed.
 pub(crate) struct WantedPlan<'a> {
     pub(crate) log: &'a Path,
-    /// File of the plan; `None` for the text in the record.
+    /// Path of the plan's file; `None` for the text in the record.
     pub(crate) file: Option<&'a Path>,
     pub(crate) begin: &'a Begin,
     /// The call without `--plan`, as messages show it.

@@ -23,7 +23,7 @@ pub(crate) struct SafetyFile {
     path: PathBuf,
     text: String,
     rules: Rules,
-    /// The files, from a record, of the plans that rules start; `None` if these plans are files on the disk.
+    /// Files of the plans that rules start, taken from a record; `None` if these plans are files on the disk.
     recorded: Option<Vec<Vec<(String, String)>>>,
 }
 
@@ -119,7 +119,7 @@ type Diversion<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 struct NamedPlan {
     /// Place where the safety file names the plan, such as `rules.toml:3`.
     place: String,
-    /// The plan's file.
+    /// Path of the plan's file.
     file: PathBuf,
 }
 

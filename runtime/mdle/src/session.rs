@@ -31,8 +31,8 @@ pub(crate) struct SessionInputs {
     pub(crate) stream: OwnedFd,
 }
 
-/// Runs a session together with `run`; `plan` is the file of the plan. Returns the exit status of the run. If the
-/// status would be 0 but a command from a file or a pipe was refused, returns 1.
+/// Runs a session together with `run`; `plan` is the path of the plan's file. Returns the exit status of the run. If
+/// the status would be 0 but a command from a file or a pipe was refused, returns 1.
 ///
 /// # Errors
 /// Fails if the commands cannot be read.

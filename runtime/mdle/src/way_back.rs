@@ -144,7 +144,8 @@ mod tests {
         way
     }
 
-    /// Returns the place and the heading to which an ideal robot drives by a path, in a frame of this heading.
+    /// Returns the final position of an ideal robot that drives the path `text` in a frame with the heading `frame`,
+    /// and the duration of the path in seconds.
     fn driven(text: &str, frame: f64) -> (Place, f64) {
         let fastest = Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) };
         let path = setpoints("back.csv", text.as_bytes(), fastest).unwrap();

@@ -8,7 +8,7 @@ use mdle_runtime::{Cause, Measured, OperandWords, Operator, SourceLine, Transiti
 
 use crate::rounded;
 
-/// Number of decimal places of a value, unless more are needed to distinguish the value from that with which it is
+/// Number of decimal places of a value, unless more are needed to distinguish the value from the value with which it is
 /// compared.
 const DECIMALS: usize = 2;
 /// Maximum number of decimal places of a value.
@@ -46,7 +46,7 @@ pub fn file_line(source: &dyn Words, at: SourceLine) -> String {
     format!("{}:{}", source.file(at), at.line)
 }
 
-/// Returns the words of an operand with its values: `r1 = 0.38 m < 40cm` if the operand `holds`, and `r1 = 0.5 m, not <
+/// Returns the words of an operand with its values: `r1 = 0.38 m < 40cm` if `holds` is `true`, and `r1 = 0.5 m, not <
 /// 40cm` otherwise.
 #[must_use]
 pub fn operand_words(operand: &OperandWords<'_>, measured: Measured, holds: bool) -> String {

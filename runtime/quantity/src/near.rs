@@ -10,8 +10,8 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&
     names.map(|other| (distance(other), other)).filter(|(found, _)| *found <= allowed).min().map(|(_, other)| other)
 }
 
-/// Returns the end of a sentence about an unknown name. It suggests the similar name in `known`, or is empty if there
-/// is none.
+/// Returns the end of a sentence about an unknown name. It suggests the name in `known` that is similar, or is empty if
+/// no name is similar.
 #[must_use]
 pub fn did_you_mean(name: &str, known: &[&str]) -> String {
     let near = nearest(name, known.iter().copied());

@@ -27,7 +27,7 @@ pub enum RecordedChange {
     Published {
         /// Number of the attribute.
         attribute: u32,
-        /// Time of the earlier of these turns.
+        /// Time of the turn before the publication.
         at: Nanos,
         /// The value as 64 bits; 0 for a kind that plans do not read.
         bits: u64,

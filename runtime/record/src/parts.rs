@@ -6,7 +6,7 @@ use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{MAGIC, McapError};
 
-/// Maximum size of a part of the file, in bytes: which is more than the data of a robot in one second.
+/// Maximum size of a part of the file, in bytes. It is more than the data of a robot in one second.
 const LARGEST: usize = 64_000_000;
 /// Maximum number of bytes that are read at a time, so that a corrupted length does not allocate more memory.
 const STEP: usize = 1 << 18;
@@ -25,7 +25,7 @@ pub(crate) enum FilePart {
 pub(crate) enum Unreadable {
     /// The system reported this error.
     System(io::Error),
-    /// The file is damaged, as this sentence explains.
+    /// The file is damaged; contains a sentence that describes the damage.
     Damaged(String),
 }
 

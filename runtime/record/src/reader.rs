@@ -144,8 +144,8 @@ impl<R: Read> Records<R> {
         TurnsWithMessages { records: self, peeked: None }
     }
 
-    /// Returns the next message of the channels `/exact/begin` and `/exact/turn`, and a number that is 0 for the first
-    /// of them and 1 for the second. Returns `None` at the end of the record.
+    /// Returns the next message of the channels `/exact/begin` and `/exact/turn`, with the index of its channel: 0 for
+    /// `/exact/begin`, 1 for `/exact/turn`. Returns `None` at the end of the record.
     fn message(&mut self) -> Result<Option<(usize, Vec<u8>)>, ReadError> {
         let unreadable = |why| match why {
             Unreadable::System(error) => ReadError::System(error),

@@ -78,9 +78,9 @@ pub enum Applied {
 pub struct RecordedTransition {
     /// State that the transition leaves.
     pub from: u64,
-    /// Bracket of the scope that ended.
+    /// Number of the bracket of the scope that ended.
     pub scope: u32,
-    /// Cause for which the scope ended.
+    /// Cause of the scope's end.
     pub cause: Cause,
     /// State that the transition enters.
     pub to: u64,

@@ -38,7 +38,7 @@ impl Clock {
         }
     }
 
-    /// Waits for the time `time`. Returns immediately in lockstep, where time advances with the commands to the robot.
+    /// Waits for `time`. Returns immediately in lockstep, where time advances with the commands to the robot.
     pub fn pass(self, time: Duration) {
         match self {
             Self::Wall => std::thread::sleep(time),

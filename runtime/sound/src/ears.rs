@@ -36,7 +36,7 @@ pub struct Ears {
     /// Loudness of the microphones' own noise.
     noise: f64,
     /// Sound that has left its source but has not reached the ears yet. The real part is the sound for the left ear,
-    /// the imaginary part that for the right ear.
+    /// and the imaginary part is the sound for the right ear.
     under_way: Vec<Complex32>,
 }
 
@@ -103,7 +103,7 @@ impl Ears {
     }
 
     /// Returns the impulse response of both ears at the pose `here` to a source at this position. The real part is the
-    /// response of the left ear, the imaginary part that of the right ear.
+    /// response of the left ear, and the imaginary part is the response of the right ear.
     fn response(&self, source: (f64, f64), here: &EarPose) -> Vec<Complex32> {
         let mut response = vec![Complex32::default(); LENGTH];
         let (sin, cos) = libm::sincos(here.heading);

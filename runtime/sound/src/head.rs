@@ -64,7 +64,7 @@ fn turn(part: f64) -> Complex64 {
     Complex64::new(cos, sin)
 }
 
-/// Computes the impulse response at one angle of incidence from the series at each frequency.
+/// Computes the impulse response at one angle of incidence; `waves` contains a series for each frequency.
 fn response(waves: &[Series], turns: &[Complex64], cosine: f64) -> [f32; TAPS] {
     let at = |place: usize| turns.get(place % PERIOD).copied().unwrap_or_default();
     let mut spectrum = vec![Complex64::new(1.0, 0.0)];

@@ -21,7 +21,7 @@ mdle_serial::configuration! {
     counts_per_metre: f64 = 1550.0, in 100.0..=10_000.0, "" "what a sonar counts", unverified;
     /// Maximum speed of the wheels of one side, in m/s.
     fastest: f64 = 1.2, in 0.01..=1.5, "m/s" "of a side", unverified;
-    /// Distance between the robot's wheel sides, as laws use it, in metres.
+    /// Distance between the wheels of the left and of the right side, as laws use it, in metres.
     wheel_base: f64 = 0.4, in 0.1..=1.0, "m" "between the sides", unverified;
     /// Acceleration of the robot, in m/s².
     acceleration: f64 = 1.0, in 0.1..=5.0, "m/s²" "", unverified;

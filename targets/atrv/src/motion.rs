@@ -8,7 +8,8 @@ use crate::config::Config;
 
 /// Maximum distance between two reported positions, in metres; a larger distance is rejected as a leap.
 const LEAP: f64 = 1.0;
-/// Maximum number by which leaps may exceed normal steps. If they exceed it further, the positions are unusable.
+/// Maximum difference between the number of leaps and the number of normal steps. If the difference is larger, the
+/// positions are unusable.
 const LEAPS: u8 = 4;
 
 /// Returns the commands for `input`; the translation comes first. If a side would exceed its maximum speed, both speeds

@@ -1,7 +1,8 @@
 //! Sends commands to the robot. A watchdog stops the robot if no motion is commanded for too long.
 //!
-//! The controller stops the robot if the line is silent, but the timeout of this is not documented. Therefore, a thread
-//! of this program stops the robot earlier; the controller's timeout matters only if the program dies.
+//! The controller stops the robot if the line is silent for some time, but it is not documented for how long.
+//! Therefore, a thread of this program stops the robot earlier; the controller's timeout matters only if the program
+//! dies.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -72,7 +73,7 @@ impl Mouth {
     /// Sends a command other than a motion command.
     ///
     /// # Errors
-    /// Fails if the line is closed, or accepts no bytes until `deadline`.
+    /// Fails if the line is closed, or accepts no bytes before `deadline`.
     pub(crate) fn say(&self, frame: &FrameBytes, deadline: Instant) -> Result<(), Fault> {
         // The lock prevents the watchdog from sending a command in the middle of this one.
         let _watch = self.shared.watch();
@@ -82,7 +83,7 @@ impl Mouth {
     /// Sends a motion command, and restarts the watchdog's timeout.
     ///
     /// # Errors
-    /// Fails if the line is closed or accepts no bytes until `deadline`, or if the watchdog has stopped the robot.
+    /// Fails if the line is closed or accepts no bytes before `deadline`, or if the watchdog has stopped the robot.
     pub(crate) fn say_motion(&self, frame: &FrameBytes, deadline: Instant) -> Result<(), Fault> {
         let mut watch = self.shared.watch();
         self.is_in_time(&watch)?;

@@ -95,8 +95,8 @@ impl Effect {
         Self { stop: Err(words), ..self }
     }
 
-    /// Accepts a stop whether it succeeds or fails, because it depends on the time of a request whether the answer is
-    /// lost.
+    /// Accepts a stop that succeeds as well as a stop that fails, because it depends on the time of a request whether
+    /// its answer is lost.
     #[must_use]
     pub const fn may_stop(self) -> Self {
         Self { may_stop: true, ..self }

@@ -71,7 +71,7 @@ impl Port {
         &self.ours
     }
 
-    /// Waits for bytes, at most for the time `limit`, and passes them to `take`. Returns `true` if bytes have arrived.
+    /// Waits at most `limit` for bytes, and passes them to `take`. Returns `true` if bytes have arrived.
     ///
     /// # Errors
     /// Fails if the line failed.

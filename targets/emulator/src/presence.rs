@@ -9,7 +9,7 @@ use std::{io, iter};
 use rustix::fs::inotify::{self, CreateFlags, ReadFlags, Reader, WatchFlags};
 use rustix::io::Errno;
 
-/// State of all lines, in order: whether a driver is connected to them.
+/// State of each line, in order; each state shows if a driver is connected to its line.
 #[derive(Debug)]
 pub(crate) struct Presence {
     watch: OwnedFd,

@@ -25,7 +25,7 @@ pub trait Emulated {
     /// Advances the robot's world by `time`.
     ///
     /// # Errors
-    /// Fails if the simulated world rejects the input, which does not occur here.
+    /// Fails if the simulated body rejects its input, which it never does for the commands of a robot.
     fn pass(&mut self, time: Duration) -> Result<(), String>;
 
     /// Removes and returns the frames that the robot has sent since the last call.

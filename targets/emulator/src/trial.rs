@@ -55,10 +55,10 @@ pub trait Trial {
         pace.step()
     }
 
-    /// Creates a robot that has just been switched on and whose world advances in steps of `step`.
+    /// Creates an emulated robot that has just been switched on. The robot's world advances in steps of `step`.
     ///
     /// # Errors
-    /// Fails if the simulated world rejects the input, which does not occur here.
+    /// Fails if `body` rejects the null input, which it never does.
     fn emulated(body: Simulated, step: Duration) -> Result<Self::Emulated, String>;
 
     /// Returns the robot's true pose in the world.
@@ -164,7 +164,7 @@ pub fn memory_asked_for<T: Trial>(asked: fn() -> u64) -> Result<u64, String> {
     result
 }
 
-/// A finished run of a robot with faults, which was in front of a wall.
+/// A finished run with faults of a robot that was in front of a wall.
 pub(crate) struct FinishedRun<T: Trial> {
     /// Last output, or the fault that ended the run.
     pub(crate) output: Result<Sensed, FaultOf<T>>,

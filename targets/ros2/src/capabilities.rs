@@ -48,7 +48,8 @@ impl Capabilities {
     }
 }
 
-/// Prints the capabilities that the robot has and those that it lacks, as TOML comments that follow the configuration.
+/// Prints the capabilities that the robot has, and the capabilities that it lacks, as TOML comments that follow the
+/// configuration.
 impl fmt::Display for Capabilities {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let given = self.optional.iter().filter(|(_, is_there, _)| *is_there).map(|(name, _, _)| *name);

@@ -19,7 +19,7 @@ pub enum Distribution {
 /// Type of the velocity command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stamped {
-    /// The type to which a program on the graph subscribes. If programs subscribe to both types, the type without a
+    /// The type to which a program on the graph subscribes; if programs subscribe to both types, the type without a
     /// time stamp.
     Auto,
     /// The type `geometry_msgs/msg/TwistStamped`.
@@ -28,7 +28,7 @@ pub enum Stamped {
     No,
 }
 
-/// Source of the bumper switches.
+/// Source of the states of the bumper switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BumperSource {
     /// The robot has no bumper.

@@ -79,7 +79,7 @@ configuration! {
     scan_zero_is_free: bool = false, "" "a range of 0 means that nothing echoes";
     /// Range sensors, each with its own topic.
     ranges: RangeSensors = Vec::new(), "" "range sensors: { topic, x, y, yaw } in m and rad";
-    /// Source of the bumper switches.
+    /// Source of the states of the bumper switches.
     bumper_type: BumperSource = "none".to_owned(), "" "none, bool, hazard or scan";
     /// Topic of the bumper, if its messages are of type `Bool` or `HazardDetectionVector`.
     bumper: String = "bumper".to_owned(), "" "topic of a bumper that is bool or hazard";
@@ -109,7 +109,8 @@ configuration! {
     stale_scan: u64 = 1000, in 50..=60_000, "ms" "without a scan or a range until the robot is stopped";
     /// Time without a bumper message after which the robot is stopped, in milliseconds; 0 for no limit.
     stale_bumper: u64 = 0, in 0..=60_000, "ms" "without the bumper until the robot is stopped; 0 for no limit";
-    /// Distance by which a step of odometry may exceed the longest path that the robot can have driven, in metres.
+    /// Maximum distance, in metres, by which a step of odometry may exceed the longest path that the robot can have
+    /// driven in the time of that step.
     jump: f64 = 0.3, in 0.01..=100.0, "m" "by which odometry may differ from the fastest way";
     /// Maximum time to find all topics of the robot, in milliseconds.
     discovery: u64 = 10_000, in 100..=600_000, "ms" "to find all topics";

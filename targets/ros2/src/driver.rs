@@ -26,7 +26,7 @@ const BACK: i64 = 1_000_000_000;
 pub(crate) const HALTING: Duration = Duration::from_millis(500);
 /// Maximum time after the zero velocity until odometry has to report that the robot slows down.
 const SLOWING: Duration = Duration::from_secs(3);
-/// Length of the last part of [`SLOWING`]; the lowest speeds within this part are used.
+/// Length of the last part of [`SLOWING`]. The lowest speeds in this part decide whether the robot has slowed down.
 const JUDGED: Duration = Duration::from_secs(1);
 /// Minimum time for which the robot has to be at rest.
 const STANDING: Duration = Duration::from_millis(200);
@@ -109,8 +109,8 @@ impl<L: Link> Ros2<L> {
     /// Updates the latest time of `/clock`.
     ///
     /// # Errors
-    /// Fails if `/clock` has gone back by more than [`BACK`], because turns would wait until it has caught up while the
-    /// robot continued to drive.
+    /// Fails if `/clock` has gone back by more than [`BACK`], because turns would wait until the clock has caught up,
+    /// while the robot continued to drive.
     fn follow_clock(&mut self) -> Result<(), Fault> {
         let clock = self.sensing.clock();
         let back = self.latest.saturating_sub(clock);

@@ -57,7 +57,7 @@ impl Search<'_> {
     /// RustDDS sends to an address of this computer's loopback interface only after it has received a datagram from the
     /// participant at this address itself. If that participant was first announced in a datagram of another participant
     /// of its program, RustDDS never answers it, so the participant never learns of the driver's readers. In this case,
-    /// a new participant of the driver helps, because the other one is announced to it again.
+    /// a new participant of the driver helps, because the publisher's participant is announced to it again.
     ///
     /// # Errors
     /// Fails if topics are missing, or if the middleware does not work.

@@ -1,5 +1,5 @@
-//! The driver of a Scout, as a kinetic state machine (paper, Eq. 1). Each input is a velocity command; the output comes
-//! from the answer to it.
+//! The driver of a Scout, as a kinetic state machine (paper, Eq. 1). Each input is sent as a velocity command; the
+//! output comes from the answer to this command.
 
 use std::time::{Duration, Instant};
 

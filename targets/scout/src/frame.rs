@@ -30,13 +30,13 @@ pub struct Frame {
 /// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// The first byte is not the start byte of a frame, but this byte.
+    /// The first byte is not the start byte of a frame; contains the first byte.
     Start(u8),
     /// The frame declares this length, which is invalid.
     Length(u16),
     /// The checksum is wrong. Contains the checksum of the received bytes, and the checksum in the frame.
     Sum(u8, u8),
-    /// The byte after the checksum is not the end byte of a frame, but this byte.
+    /// The byte after the checksum is not the end byte of a frame; contains this byte.
     End(u8),
 }
 

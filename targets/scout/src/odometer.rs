@@ -14,7 +14,8 @@ const NUMBERS: i32 = 65_535;
 const LEAP: f64 = 1.0;
 /// Maximum ratio of a wheel's speed to its commanded speed.
 const FASTER: f64 = 2.0;
-/// Maximum number by which leaps may exceed normal steps. If they exceed it further, the positions are unusable.
+/// Maximum difference between the number of leaps and the number of normal steps. If the difference is larger, the
+/// positions are unusable.
 const LEAPS: u8 = 4;
 
 /// Odometry that adds up the changes of the wrapping positions from state to state.

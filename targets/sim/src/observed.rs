@@ -130,7 +130,7 @@ impl Observed {
         Self { goal, ..self }
     }
 
-    /// Makes the robot draw its path, after the run has ended, as a still picture and as a moving picture; `setup`
+    /// Makes the robot draw its path, after the run has ended, as a still picture and as an animation; `setup`
     /// describes the world, the body and the seed in the titles of the pictures.
     pub(crate) fn drawn(
         mut self,

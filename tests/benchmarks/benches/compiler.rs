@@ -67,7 +67,8 @@ fn small_plans(bytes: usize) -> String {
     plans
 }
 
-/// Returns a plan that is a sequence of atoms. If `differ` is `true`, all conditions differ.
+/// Returns a plan that is a sequence of atoms. If `differ` is `true`, no two conditions are equal; otherwise all are
+/// equal.
 fn written_out(atoms: usize, differ: bool) -> String {
     let mut plan = String::from("{ P (bumper)\n");
     for atom in 0..atoms {

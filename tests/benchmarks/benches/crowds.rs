@@ -140,8 +140,8 @@ fn memory_of(process: u32) -> Option<f64> {
     Some(line.trim().split(' ').next()?.parse::<f64>().ok()? / 1000.0)
 }
 
-/// Returns the processor time that all rays of a robot take per second, in seconds, in the hall of a crowd without the
-/// other robots.
+/// Returns the processor time, in seconds, that casting all rays of a robot takes per simulated second. The rays are
+/// cast in an empty hall with the size for `robots` robots.
 fn rays(robots: u32) -> f64 {
     let rows = f64::from(robots).sqrt().ceil();
     let side = rows * SPACING;

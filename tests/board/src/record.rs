@@ -93,7 +93,7 @@ pub fn ping(record: &Ping, y: &mut Sensed) {
     }
 }
 
-/// Updates the compass of `y` with the pings of a turn, once all of them have been read.
+/// Updates the compass of `y` with all pings of a turn. Called once all of them have been read.
 pub fn hear(y: &mut Sensed) {
     let Sensed { compass, pings, odometry, shape, .. } = y;
     compass.take(pings, *odometry, shape);

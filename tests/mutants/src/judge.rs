@@ -10,7 +10,7 @@ use crate::mutant::Mutant;
 use crate::report::{self, Report};
 use crate::trial::{Outcome, Trials};
 
-/// Data for trying mutants.
+/// The source files and the list of equivalent mutants, which all trials need.
 pub(crate) struct Judge<'a> {
     pub(crate) sources: &'a [Source],
     pub(crate) equivalents: &'a Equivalents,

@@ -104,7 +104,7 @@ signals! {
     V "v";
 }
 
-/// Declares laws in the form of `interrupts!`, each with the type of the law while its atom runs.
+/// Declares laws. The arguments are those of `interrupts!`, followed by the type of the law while its atom runs.
 macro_rules! laws {
     ($($name:ident $text:literal ($($arg:ident: $type:ty),*) [$($value:expr),*] $law:ident;)*) => {$(
         #[doc = concat!("The law `", $text, "`.")]

@@ -53,7 +53,7 @@ pub(crate) struct CourseExchange {
     pub(crate) hits: bool,
 }
 
-/// A turn of a run that has been made, and its result.
+/// A turn that has been made, and its result.
 pub(crate) struct CourseTurn {
     /// Number of the turn, counted from 0.
     pub(crate) number: u64,

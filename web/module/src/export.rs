@@ -26,7 +26,7 @@ pub(crate) enum ExportKind {
     Trail,
     /// Picture of `--plot`.
     Plot,
-    /// Moving picture of `--record`.
+    /// Animation of `--record`.
     Record,
 }
 

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::causes::cause;
 use crate::course::{Course, CourseExchange, CourseTurn};
 
-/// Maximum number of transitions of a turn that a page receives.
+/// Maximum number of transitions per turn that a page receives.
 const TRANSITIONS_MOST: usize = 40;
 
 /// Returns a turn as JSON; `before` is the time of the previous exchange.

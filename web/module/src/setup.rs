@@ -25,7 +25,7 @@ pub(crate) struct PageSetup {
     pub(crate) world_name: String,
     /// Body of the robot: `ideal`, `scout` or `atrv`; empty for `ideal`.
     pub(crate) body: String,
-    /// Names of the body's errors that are not simulated, separated by commas.
+    /// Names of the parts of the body's model that are omitted, separated by commas.
     pub(crate) without: String,
     /// Start pose as `x,y,deg`; empty for the start pose of the world.
     pub(crate) start: String,

@@ -40,9 +40,9 @@ pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns an error if the declaration cannot be `exclusive`. An exclusive interrupt has at least one parameter, and
-/// all its parameters are compared without rounding. It has no memory, because its value must be the same in all
-/// scopes.
+/// Returns an error if the declaration is marked `exclusive` but must not be. An exclusive interrupt has at least one
+/// parameter, and all its parameters are compared without rounding. It has no memory, because its value must be the
+/// same in all scopes.
 fn exclusive(declaration: &Declaration) -> Option<Diagnostic> {
     let name = &declaration.name;
     let because = |message: String| Some(at(declaration, message));

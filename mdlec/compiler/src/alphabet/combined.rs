@@ -66,7 +66,7 @@ pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<
 }
 
 impl Alphabet {
-    /// Returns the alphabet that consists of one shared file only. It is for a robot with every capability.
+    /// Returns the alphabet that consists only of the shared file `file`, for a robot that has every capability.
     #[must_use]
     pub fn shared(file: AlphabetFile) -> Self {
         Self {

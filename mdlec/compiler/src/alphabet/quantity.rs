@@ -144,8 +144,8 @@ pub struct Unit {
     pub name: &'static str,
     /// Kind of quantity that the unit measures.
     pub kind: ParameterKind,
-    /// Factor of the exact conversion to the family's unit: one of this unit is `factor` times ten to the power
-    /// `exponent` of the family's unit.
+    /// Factor of the exact conversion to the family's unit: one of this unit equals `factor` · 10^`exponent` of the
+    /// family's unit.
     pub factor: u32,
     /// Exponent of ten in the exact conversion to the family's unit.
     pub exponent: i32,

@@ -1,4 +1,4 @@
-//! Finds conditions that are never true, or that are always true when they are first evaluated, regardless of the
+//! Finds conditions that are never true, or that are always true as soon as they are evaluated, regardless of the
 //! enclosing scopes (W0203).
 
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ impl<'l> ConstantConditions<'l> {
         self.alone.stays(bracket, condition, When::Entered)
     }
 
-    /// Returns a warning about an interrupt that has always fired when its scope is entered, or about an operand that
+    /// Returns a warning about an interrupt that always fires as soon as its scope is entered, or about an operand that
     /// is never true. There is no warning about `null` and `wait inf`, whose purpose is never to fire.
     pub(super) fn lint(&self, bracket: u32, interrupt: &'l Interrupt) -> Option<Diagnostic> {
         let condition = &interrupt.condition;
@@ -69,7 +69,7 @@ impl<'l> ConstantConditions<'l> {
         Some(never_true(lint, operands, &text, span))
     }
 
-    /// Returns the warning about an interrupt that has always fired when its scope is entered.
+    /// Returns the warning about an interrupt that always fires as soon as its scope is entered.
     fn skipped(&self, bracket: u32, interrupt: &'l Interrupt) -> Diagnostic {
         let (condition, text, span) = (&interrupt.condition, &interrupt.text, interrupt.span);
         let (what, skipped) = self.what(bracket);

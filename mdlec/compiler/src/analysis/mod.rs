@@ -89,9 +89,9 @@ pub struct ScopeAnswer {
     pub atoms: [usize; 2],
     /// Reachability of the scope's atoms.
     pub reach: Reach,
-    /// Operands of the scope's interrupt by which it can end.
+    /// Operands of the scope's interrupt by which the scope can end.
     pub ended_by: Vec<String>,
-    /// Operands of the scope's interrupt by which it never ends.
+    /// Operands of the scope's interrupt by which the scope never ends.
     pub never_by: Vec<String>,
 }
 
@@ -108,9 +108,9 @@ pub struct AtomAnswer {
     pub law: String,
     /// Reachability of the atom.
     pub reach: Reach,
-    /// Operands of the atom's own interrupt by which it can end, and `completed` if its law can complete.
+    /// Operands of the atom's own interrupt by which the atom can end, and `completed` if the atom's law can complete.
     pub ended_by: Vec<String>,
-    /// Operands of the atom's interrupt by which it never ends.
+    /// Operands of the atom's interrupt by which the atom never ends.
     pub never_by: Vec<String>,
     /// `true` if the atom can end, either by itself or together with an enclosing scope.
     pub ends: bool,
@@ -242,7 +242,7 @@ impl Answers {
 }
 
 /// Returns the texts of the operands by which an interrupt can fire, and the texts of the operands by which it cannot
-/// fire, without `null`.
+/// fire. Omits `null`.
 fn by(condition: &Condition, found: &BracketFacts, machine: &Machine) -> (Vec<String>, Vec<String>) {
     let (mut can, mut never) = (Vec::new(), Vec::new());
     for (operand, outcome) in condition.operands().iter().zip(&found.operands) {

@@ -3,7 +3,7 @@
 /// Maximum number of variables for which all choices are enumerated.
 pub(super) const VARIABLES: usize = 12;
 
-/// A truth table. The index of a bit is the number of the choice, in which bit `i` is the value of variable `i`.
+/// A truth table. The index of a bit is the number of a choice; bit `i` of this number is the value of variable `i`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct TruthTable(Vec<u64>);
 

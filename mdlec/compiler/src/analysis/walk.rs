@@ -21,8 +21,8 @@ use crate::plan::{Condition, QuarkId};
 pub enum Reach {
     /// The atom's law may be applied.
     Runs,
-    /// The atom may become the current atom, but its own interrupt or the interrupt of an enclosing scope has then
-    /// always fired.
+    /// The atom may become the current atom, but its own interrupt or the interrupt of an enclosing scope then always
+    /// fires at once.
     Skipped,
     /// The atom never becomes the current atom.
     Never,
@@ -40,18 +40,18 @@ pub(super) struct BracketFacts {
     pub(super) body_ends: bool,
     /// Reason why the bracket is always skipped; `None` if it is not.
     pub(super) skipped: Option<Skip>,
-    /// Number of the previous element, if this element is never reached because of it and the text alone does not show
-    /// this; `None` otherwise.
+    /// Number of the previous element if it is the reason why this element is never reached and the text alone does not
+    /// show this; `None` otherwise.
     pub(super) cut_off_by: Option<u32>,
 }
 
 /// Reason why an element is always skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Skip {
-    /// The element's interrupt has always fired when the element is entered.
+    /// The element's interrupt always fires as soon as the element is entered.
     AtOnce,
-    /// The element's interrupt has always fired when the previous element ends. Contains the number of the outermost
-    /// bracket whose interrupt can end the previous element.
+    /// The element's interrupt always fires as soon as the previous element has ended. Contains the number of the
+    /// outermost bracket whose interrupt can end the previous element.
     Behind(u32),
     /// An enclosing element is skipped.
     Inside,

@@ -1,4 +1,4 @@
-//! Replaces characters of a file that are not printable by their numbers, and converts offsets between the original
+//! Replaces characters of a file that are not printable by their code points, and converts offsets between the original
 //! text and the printable text.
 
 use codespan_reporting::files::SimpleFile;

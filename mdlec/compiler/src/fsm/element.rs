@@ -40,8 +40,8 @@ pub enum Exit<'m> {
     Over,
     /// The element is followed by another element in the same string, which is entered.
     Next(Element<'m>),
-    /// The element was the last one in the string of its enclosing element, which is contained here. If that element is
-    /// a loop, it may begin its next pass.
+    /// The element was the last one in the string of its enclosing element; contains the enclosing element. If the
+    /// enclosing element is a loop, it may begin its next pass.
     Last(Element<'m>),
 }
 
@@ -133,7 +133,7 @@ impl<'m> Element<'m> {
         self.tables.scopes[self.index()].as_ref().map(|scope| &scope.interrupt)
     }
 
-    /// Returns the condition of the element's interrupt; null for a loop.
+    /// Returns the condition of the element's interrupt; the null condition for a loop.
     #[must_use]
     pub fn condition(self) -> &'m Condition {
         self.interrupt().map_or(&Condition::Null, |interrupt| &interrupt.condition)

@@ -120,7 +120,7 @@ impl Machine {
     }
 }
 
-/// A step of a walk over the elements of a machine.
+/// One step of a walk over the elements of a machine.
 #[derive(Debug, Clone, Copy)]
 pub enum Visit<'m> {
     /// Visit at the entry of the element.

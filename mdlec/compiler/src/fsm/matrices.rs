@@ -58,7 +58,7 @@ pub struct Transition<'p> {
     pub record: Option<Record>,
     /// Labels of the interrupt's scope.
     pub marks: &'p [Mark],
-    /// Labels of the elements whose last element was the interrupt's scope, and which therefore end with it.
+    /// Labels of the elements whose last element was the interrupt's scope. These elements end together with the scope.
     pub ends_with: Vec<&'p Mark>,
 }
 
@@ -131,9 +131,9 @@ struct MatrixBracket<'p> {
     around: Option<usize>,
     /// Labels of the elements that end together with the bracket.
     marks: &'p [Mark],
-    /// First state of the bracket, counted from 0.
+    /// Index of the first state in the bracket, counted from 0.
     first: usize,
-    /// Last state of the bracket, counted from 0.
+    /// Index of the last state in the bracket, counted from 0.
     last: usize,
     /// Index of the bracket's first interrupt.
     begins: usize,

@@ -36,7 +36,7 @@ impl NameBudget {
     }
 }
 
-/// Returns a copy of the name that is never freed. Equal names are stored only once.
+/// Returns a copy of the name; the copy is never freed. Equal names are stored only once.
 ///
 /// # Errors
 /// Fails if there are too many names.
@@ -44,7 +44,7 @@ pub(super) fn interned(name: &str, budget: &NameBudget) -> Result<&'static str, 
     NAMES.lock().unwrap_or_else(PoisonError::into_inner).keep(name, budget)
 }
 
-/// Returns a list of module attributes that is never freed. Equal lists are stored only once.
+/// Returns these module attributes as a list that is never freed. Equal lists are stored only once.
 ///
 /// # Errors
 /// Fails if there are too many names, or too many attributes for one plan.

@@ -11,7 +11,7 @@ pub(super) enum Arrow {
     Flow,
     /// A line without a head, into the first element of a box or out of its last element.
     Port,
-    /// An arrow that leaves a scope, for the case that the scope's own condition fires.
+    /// An arrow that leaves a scope; it shows where the plan continues if the scope's own condition fires.
     Exit,
     /// An arrow back to the beginning of a loop, for its next pass.
     Again,

@@ -148,7 +148,8 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", escaped(text))
 }
 
-/// Escapes a text for a string of Graphviz, where a backslash begins an escape sequence and `&` an HTML entity.
+/// Escapes `text` for a string in Graphviz's language, in which a backslash begins an escape sequence and `&` begins an
+/// HTML entity.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {

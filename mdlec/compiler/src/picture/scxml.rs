@@ -20,7 +20,7 @@ use crate::plan::{Condition, Mark, Nondegenerate, Plan, Quark, RecordId};
 
 /// Maximum length of the SCXML text, in bytes.
 const LONGEST: usize = 64 << 20;
-/// Value before the first turn of the variable `n`, which counts the transitions of a turn.
+/// Initial value of the variable `n`, which counts the transitions of a turn.
 const BEFORE: u32 = TRANSITIONS_PER_TURN + 1;
 
 /// Returns the plan as a state machine in SCXML.

@@ -1,4 +1,4 @@
-//! Escapes text for XML, and replaces characters that XML does not allow with their numbers.
+//! Escapes text for XML, and replaces characters that XML does not allow by their code points.
 
 use mdle_runtime::{Printable, is_printable};
 

@@ -1,4 +1,4 @@
-//! Writes angles in degrees, if the angle is a number of degrees with at most six decimals (up to rounding errors).
+//! Writes an angle in degrees if it is a number of degrees with at most six decimals (up to rounding errors).
 
 use mdle_runtime::Radians;
 

@@ -135,7 +135,7 @@ fn like_parameter(call: &Call, quarks: &ResolvedQuarks<'_>, names: DefinitionNam
     call.args.is_empty().then(|| found.fix("did you mean {}?", call.name_span(), near))
 }
 
-/// Converts the argument that was passed for a parameter to a value with which a signal is compared.
+/// Converts the argument that was passed for a parameter to the value with which `signal` is compared.
 fn given(parameter: &Parameter<'_>, at: Span, signal: SignalCall<'_>) -> Fitted {
     let SignalCall { unit, declaration, .. } = signal;
     if parameter.kind != unit.kind {

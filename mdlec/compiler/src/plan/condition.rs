@@ -1,11 +1,12 @@
-//! Conditions of a resolved plan (docs/src/reference/semantics.md, 2), and the evaluation of conditions in a situation.
+//! Conditions of a resolved plan (docs/src/reference/semantics.md, 2), and their evaluation for a given state of the
+//! robot and the plan.
 
 use super::{QuarkId, RecordId};
 
 /// A condition, which is `true` when it has fired.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
-    /// Never fires: `null`, `wait inf`, or a condition that degeneracy removal has replaced.
+    /// Never fires: `null`, `wait inf`, or a condition that was replaced because an outer scope has the same condition.
     Null,
     /// An interrupt quark.
     Quark(QuarkId),

@@ -120,7 +120,7 @@ impl<'q> Functions<'q> {
     }
 }
 
-/// Joins operands with `join`. A set with only one operand becomes this operand.
+/// Joins operands with `join`; a single operand is returned unchanged.
 fn single(mut operands: BTreeSet<Normal>, join: impl Fn(BTreeSet<Normal>) -> Normal) -> Normal {
     match operands.pop_first() {
         Some(only) if operands.is_empty() => only,

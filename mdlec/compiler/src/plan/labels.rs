@@ -1,5 +1,5 @@
-//! Labels of one use of a definition, and the `after` conditions that refer to them (docs/src/reference/semantics.md,
-//! 2.3).
+//! Labels in a definition, and the `after` conditions that refer to them (docs/src/reference/semantics.md, 2.3). A plan
+//! that is used by name is copied in, so each use of its definition has labels of its own.
 
 use std::collections::{BTreeMap, BTreeSet};
 

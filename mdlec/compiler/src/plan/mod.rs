@@ -155,7 +155,7 @@ impl Value {
     }
 }
 
-/// A closed string: a sequence that has its own interrupt.
+/// A scope, which the paper calls a closed string: a sequence of elements that has its own interrupt.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scope {
     /// Name of the scope; empty in formal notation.

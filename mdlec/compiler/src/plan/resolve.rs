@@ -213,8 +213,8 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// Resolves the main part of an element. Each form of element has its own function, which saves stack space when
-    /// plans use plans.
+    /// Resolves an element without its label and its frame. Each form of element has its own function, which saves
+    /// stack space when plans use plans.
     fn primary(&mut self, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         match &element.primary {
             Primary::Atom(atom) => self.written(atom, element.span, frame, nodes),

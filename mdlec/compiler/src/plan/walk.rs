@@ -16,7 +16,7 @@ pub enum PlanPart<'p> {
     Atom(&'p Atom),
 }
 
-/// A step of a walk.
+/// One step of a walk through a plan.
 #[derive(Debug, Clone, Copy)]
 pub enum Visit<'p> {
     /// The part is entered.
@@ -29,7 +29,7 @@ pub enum Visit<'p> {
 #[derive(Debug)]
 pub struct Walk<'p> {
     root: Option<&'p Scope>,
-    /// Parts that have been entered and not left yet, each with its remaining nodes.
+    /// Parts that have been entered and not left yet, each with those of its nodes that have not been visited.
     open: Vec<(PlanPart<'p>, slice::Iter<'p, Node>)>,
 }
 

@@ -8,7 +8,7 @@ use crate::alphabet::{self, Alphabet};
 use crate::diagnostic::{SourceId, has_errors};
 use crate::syntax::{Arena, NoFiles, parse_with};
 
-/// The texts of a plan that scripts may name.
+/// Texts of the interrupts and laws in a plan, by which scripts name them.
 pub(crate) struct Words<'p> {
     plan: &'p Plan,
     alphabet: &'p Alphabet,

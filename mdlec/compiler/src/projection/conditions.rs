@@ -34,12 +34,12 @@ pub(super) fn guards<'s>(plan: &Plan<'s>, build: &mut Build<'_, 's>) -> Vec<Opti
     guards.iter().map(joined).collect()
 }
 
-/// Projects the condition of an atom, which the first robot evaluates.
+/// Projects the condition of an atom. The first robot evaluates the condition.
 pub(super) fn of_atom<'s>(condition: &Condition<'s>, build: &mut Build<'_, 's>) -> Condition<'s> {
     build.read(condition, ConditionContext::Atom, 0)
 }
 
-/// Projects the condition of a behavior that is defined inside another plan. The first robot evaluates this condition.
+/// Projects the condition of a behavior that is defined inside another plan. The first robot evaluates the condition.
 pub(super) fn of_behavior<'s>(condition: &Condition<'s>, build: &mut Build<'_, 's>) -> Condition<'s> {
     build.read(condition, ConditionContext::Behavior, 0)
 }

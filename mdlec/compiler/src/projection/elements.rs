@@ -43,7 +43,7 @@ pub(super) fn plans<'s>(
     (plans, build.meetings)
 }
 
-/// Appends the number of the next atom to `numbers` for each atom, and adds the labels of atoms to `labels`. An atom
+/// For each atom, appends the number of the next atom to `numbers`. Also adds the labels of atoms to `labels`. An atom
 /// whose law may complete is counted as two atoms, because a waiting atom follows it.
 fn number<'s>(
     elements: &[Element<'s>],

@@ -27,7 +27,7 @@ pub(super) enum ConditionContext {
 /// Robots to which a quark belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Owner {
-    /// A timer, which is the same for every robot.
+    /// A timer, which runs alike on every robot.
     Timer,
     /// One robot, by its index in the group.
     One(usize),

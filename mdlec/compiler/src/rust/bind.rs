@@ -148,7 +148,7 @@ fn tables(alphabet: &Alphabet, quarks: &[Bound<'_>]) -> String {
     text + "}\n"
 }
 
-/// Writes one table of the macro call.
+/// Writes one table of the call of `runtime::alphabet!`.
 fn table(text: &mut String, title: &str, lines: impl Iterator<Item = String>) {
     let lines: String = lines.fold(String::new(), |mut lines, line| {
         // Writing to a string does not fail.

@@ -56,7 +56,7 @@ pub(super) fn atom_variant(atom: usize) -> Ident {
 #[derive(Debug)]
 pub(super) struct Distinct {
     names: BTreeSet<String>,
-    /// For each name, the last number that was appended to it; it shortens the search for the next number.
+    /// For each name, the last number that was appended to it; the search for the next number begins there.
     numbers: BTreeMap<String, usize>,
 }
 

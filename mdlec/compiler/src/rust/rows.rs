@@ -213,7 +213,7 @@ fn row_functions(rows: &Rows) -> TokenStream {
     }
 }
 
-/// Emits `follows(1, 1, 2)`.
+/// Emits the successor of a scope: `follows(1, 1, 2)`.
 fn follower(Follows { atom, from, to }: Follows) -> TokenStream {
     let atom = Literal::u32_unsuffixed(atom);
     let [from, to] = [from, to].map(Literal::u16_unsuffixed);
@@ -227,7 +227,7 @@ fn turn(Radians(radians): Radians) -> TokenStream {
     quote!(degrees(#degrees))
 }
 
-/// Emits `runtime::MarkRow { … }`.
+/// Emits a label of an element: `runtime::MarkRow { … }`.
 fn mark(mark: &MarkRow) -> TokenStream {
     let MarkRow { bracket, level, first, count, first_fact, facts } = mark;
     let level = Literal::u16_unsuffixed(*level);
@@ -240,7 +240,7 @@ fn mark(mark: &MarkRow) -> TokenStream {
     }
 }
 
-/// Emits `runtime::Fact { memory: 0, operand: Some(1) }`.
+/// Emits a fact that `after` reads: `runtime::Fact { memory: 0, operand: Some(1) }`.
 fn fact(Fact { memory, operand }: &Fact) -> TokenStream {
     let memory = Literal::u32_unsuffixed(*memory);
     let operand = match operand.map(Literal::u32_unsuffixed) {

@@ -42,7 +42,7 @@ fn row(SourceLine { file, line }: SourceLine, first: u32, count: u32) -> TokenSt
     quote!([#(#numbers),*])
 }
 
-/// Emits `runtime::ValueWords { after: 2, unit: "cm", scale: 0.01 }`.
+/// Emits the position of a value in an operand's text: `runtime::ValueWords { after: 2, unit: "cm", scale: 0.01 }`.
 fn value(ValueWords { after, unit, scale }: &ValueWords<'_>) -> TokenStream {
     let (after, scale) = (Literal::u32_unsuffixed(*after), number(*scale));
     quote!(runtime::ValueWords { after: #after, unit: #unit, scale: #scale })

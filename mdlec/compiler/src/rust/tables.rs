@@ -76,7 +76,8 @@ pub(super) fn entries(machine: &Machine) -> (TokenStream, TokenStream) {
     (quote!([Nanos; #levels]), quote!([Nanos::ZERO; #levels]))
 }
 
-/// Emits `Bracket::scope(level, first, last, parent)` or `Bracket::repeat(times, slot, stride, first, last, parent)`.
+/// Emits a bracket: `Bracket::scope(level, first, last, parent)` or `Bracket::repeat(times, slot, stride, first, last,
+/// parent)`.
 fn bracket(element: Element<'_>) -> TokenStream {
     let parent = element.parent().unwrap_or(element);
     let [first, last] = [element.first(), element.last()].map(|atom| Literal::u32_unsuffixed(atom.number()));
@@ -95,7 +96,7 @@ pub(super) fn level(element: Element<'_>) -> u16 {
     element.level().unwrap_or(0)
 }
 
-/// Emits `runtime::Follows::new(atom, from, to)`.
+/// Emits the successor of a scope: `runtime::Follows::new(atom, from, to)`.
 pub(super) fn follows(follows: Follows) -> TokenStream {
     let Follows { atom, from, to } = follows;
     let atom = Literal::u32_unsuffixed(atom);

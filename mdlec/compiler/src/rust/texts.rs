@@ -3,7 +3,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-/// Emits `runtime::TextList::new(concat!["go 20 0", "stop"], &[7, 11])`.
+/// Emits a list of texts: `runtime::TextList::new(concat!["go 20 0", "stop"], &[7, 11])`.
 pub(super) fn text_list<'t>(texts: impl Iterator<Item = &'t str>) -> TokenStream {
     let (mut parts, mut ends, mut end) = (Vec::new(), Vec::new(), 0_usize);
     for text in texts {

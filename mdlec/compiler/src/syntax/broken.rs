@@ -1,5 +1,5 @@
-//! Removes from the tree the elements that a syntax error has affected. The parser may have read other words as names,
-//! and later stages must not report these names. Elements outside the error's region remain.
+//! Removes from the tree the elements that a syntax error has affected. In such an element, the parser may have read
+//! other words as names, and later stages must not report these names. Elements outside the error's region remain.
 
 use bumpalo::Bump;
 

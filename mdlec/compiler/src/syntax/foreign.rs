@@ -1,5 +1,5 @@
 //! Reports words of other languages and misspelled keywords, and replaces them with tokens, so that parsing continues
-//! as if the plan were written in MDLe. Each gets only one message.
+//! as if the plan were written in MDLe. Each such word gets only one message.
 
 mod advice;
 mod loops;

@@ -24,7 +24,7 @@ struct OpenBrace {
 }
 
 /// Returns the tokens before which a brace must be closed. Such a token begins a line that is not indented more than
-/// the line of the brace, although a line between these two lines is.
+/// the line of the brace, while a line between these two lines is indented more.
 pub(super) fn ends(source: FileText<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, BraceEnd> {
     let mut ends = BTreeMap::new();
     let mut open: Vec<OpenBrace> = Vec::new();

@@ -156,7 +156,8 @@ fn sign(diagnostic: Diagnostic, source: FileText<'_>, found: &str, place: TextRa
     diagnostic.fix(words, span, format!("{found}{number}"))
 }
 
-/// Returns the word `word`, which replaces characters, with spaces where the characters touch other text.
+/// Returns `word`, which is to replace the characters at `place`. Adds a space on each side on which these characters
+/// touch other text.
 fn apart(source: FileText<'_>, place: TextRange, word: &str) -> String {
     let is_blank = |c: Option<char>| c.is_none_or(char::is_whitespace);
     let before = source.text.get(..place.start).and_then(|before| before.chars().next_back());
@@ -319,7 +320,7 @@ fn units() -> String {
     names.join(" ")
 }
 
-/// Returns characters in quotes; invisible characters are replaced by their numbers.
+/// Returns `text` in quotes, with each invisible character replaced by its code point.
 fn shown(text: &str) -> String {
     let shown: String = text
         .chars()

@@ -36,7 +36,7 @@ pub(super) struct Nodes<'t, 's> {
     pub(super) source: FileText<'s>,
     /// Arena of the tree.
     arena: &'s Bump,
-    /// Tokens of the text. Nodes of broken elements are made from them.
+    /// Tokens of the text. Nodes of broken elements are created from these tokens.
     pub(super) tokens: &'t [Token<'s>],
     /// Doc comments, each with the index of the token that follows it.
     docs: &'t [(usize, &'s str)],

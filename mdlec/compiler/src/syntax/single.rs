@@ -42,8 +42,8 @@ pub fn operands(text: &str) -> Option<Vec<&str>> {
 }
 
 /// Inserts a text between `before` and `behind`. Returns `true` if the result is a plan with one element that `is_good`
-/// accepts, both on one line and with a line break after the text. Then no comment or bracket in the text extends
-/// beyond its end.
+/// accepts, both on one line and with a line break after the text. In this case, no comment or bracket in the text
+/// extends beyond the end of the text.
 fn is_alone(text: &str, before: &str, behind: &str, mut is_good: impl FnMut(&Element<'_>) -> bool) -> bool {
     text.chars().all(mdle_runtime::is_printable)
         && ["", "\n"].iter().all(|end| {

@@ -29,7 +29,7 @@ pub struct File<'s> {
     pub is_incomplete: bool,
 }
 
-/// A plan or a behavior: a closed string in braces.
+/// A plan or a behavior: a scope that is written in braces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Plan<'s> {
     /// Lines of the doc comment before the plan, without the slashes.

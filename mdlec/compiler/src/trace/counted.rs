@@ -113,7 +113,7 @@ type Entered<'p> = Stamps<Box<[Stamp]>, &'p [Option<Here>]>;
 
 type CountedCursor<'p> = Cursor<Entered<'p>, Box<[u64]>>;
 
-/// Situation of a condition: the level of a scope in the current state, and the reports of the turn.
+/// Data for evaluating a condition: the level of its scope in the current state, and the reports of the turn.
 struct LevelSituation<'r, 'p> {
     scripted: &'r Scripted<'p>,
     cursor: &'r CountedCursor<'r>,

@@ -45,7 +45,7 @@ struct Factor<'p> {
     operand: Option<u32>,
 }
 
-/// Situation of an interrupt's condition: the state of the product, and the reports of the turn.
+/// Data for evaluating an interrupt's condition: the state of the product, and the reports of the turn.
 struct ProductSituation<'t, 'p> {
     product: &'t MatrixProduct<'p>,
     number: usize,

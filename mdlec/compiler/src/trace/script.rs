@@ -156,10 +156,10 @@ impl Script {
         self
     }
 
-    /// Replaces the names in the script with quark texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
+    /// Replaces each name in the script with the text of the same quark in `plan`: `r0<60cm` becomes `r0 < 0.6`.
     ///
     /// # Errors
-    /// Fails at the first name that is neither an interrupt of the plan nor a law of the plan that completes.
+    /// Fails at the first name that is neither an interrupt in the plan nor a law in the plan that can complete.
     pub fn in_words_of(mut self, plan: &Plan, alphabet: &Alphabet) -> Result<Self, ScriptError> {
         let words = Words::new(plan, alphabet);
         for (reports, line) in self.turns.iter_mut().zip(&self.lines) {

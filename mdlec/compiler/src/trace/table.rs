@@ -86,7 +86,7 @@ struct FiredRow<'p> {
     operand: Option<u32>,
 }
 
-/// Situation of a row's condition: the table, the row's memory, and the reports of the turn.
+/// Data for evaluating a row's condition: the table, the row's memory, and the reports of the turn.
 struct RowSituation<'t, 'p> {
     table: &'t TableMachine<'p>,
     memory: &'t ScopeMemory,
@@ -175,7 +175,7 @@ impl<'p> TableMachine<'p> {
         self.state = state;
     }
 
-    /// Replaces the records that contain labels of elements that end with this row.
+    /// Replaces the record of each definition in which a labelled element ends with this row.
     fn record(&mut self, ending: &FiredRow<'p>) {
         let InterruptRow { marks, ends_with, .. } = &self.rows[ending.row];
         let own = marks.iter().map(|mark| (mark, ending.operand));
@@ -240,7 +240,7 @@ fn empty(record: Record) -> Vec<bool> {
     vec![false; record.facts as usize]
 }
 
-/// A table that is being filled from left to right.
+/// A table that is being filled in the order of the plan's text.
 struct Filling<'p> {
     plan: &'p Plan,
     states: Vec<AtomState<'p>>,

@@ -77,7 +77,7 @@ struct EndedScope<'p> {
     operand: Option<u32>,
 }
 
-/// Situation of a condition: an open element, and the reports of the turn.
+/// Data for evaluating a condition: an open element, and the reports of the turn.
 struct ElementSituation<'t, 'p> {
     tree: &'t TreeWalk<'p>,
     open: &'t EnteredElement,

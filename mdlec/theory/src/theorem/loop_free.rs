@@ -44,8 +44,8 @@ pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<ScopeRun>, Vec<Bro
     (runs, skips)
 }
 
-/// Appends the run to `runs` if it ends just before its destination. Otherwise the interrupt leads past a state, and
-/// the broken condition is appended to `skips`.
+/// Appends `run` to `runs` if its destination is the state directly after its last state. Otherwise, the interrupt of
+/// `run` leads past a state, and the condition that is broken is appended to `skips`.
 fn end(machine: &Machine, order: &[State], run: ScopeRun, runs: &mut Vec<ScopeRun>, skips: &mut Vec<Broken>) {
     if run.last + 1 == run.to {
         runs.push(run);

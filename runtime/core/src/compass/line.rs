@@ -1,4 +1,5 @@
-//! Fits a line to the echoes of a wall from the sonar that faces it, while the robot drives along the wall.
+//! Fits a line to a wall's echoes while the robot drives along the wall; the sonar that faces the wall receives these
+//! echoes.
 
 use crate::Nanos;
 

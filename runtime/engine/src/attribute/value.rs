@@ -174,7 +174,7 @@ impl Value {
         }
     }
 
-    /// Returns the bits of a value that plans read as a number; 0 for any other value.
+    /// Returns the bits of a value that plans can read as a number; 0 for any other value.
     pub(crate) fn bits(&self) -> u64 {
         match self {
             Self::Integer(number) => number.cast_unsigned(),

@@ -21,13 +21,13 @@ pub(crate) struct LoadedModule<Y> {
     pub(crate) is_held: bool,
     /// Number of turns that ended without the module because it was late.
     pub(crate) late_turns: u64,
-    /// Reason why the module failed or was given up; empty if it was not.
+    /// Reason why the module failed or was given up; empty if neither has happened.
     pub(crate) fault: String,
 }
 
 /// Code of a loaded module, and the thread that runs it.
 pub(crate) enum ModuleCode<Y> {
-    /// A module that makes turns, with its seat among the modules of a turn.
+    /// A module that makes turns. The threads that run turns reach the module through its seat.
     InTurns(Arc<Seat<Y>>),
     /// A background module, with its own thread.
     InBackground(ExchangeState),
@@ -73,7 +73,7 @@ impl ModuleState {
 
 impl<Y> LoadedModule<Y> {
     /// Creates a loaded module; `now` is the time of loading. If `lives` is `true`, the thread of a background module
-    /// starts to run; in a replay, it never runs.
+    /// starts to run; otherwise, as in a replay, the thread never runs.
     pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
         let Candidate { name, declared, form } = candidate;
         let (runs, state) = match form {

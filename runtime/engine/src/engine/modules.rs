@@ -1,4 +1,5 @@
-//! The modules of an engine. They make turns, with turn breaks in a fixed order in between.
+//! The modules of an engine. The modules make turns; between two turns there is a turn break, which serves the modules
+//! in a fixed order.
 
 use std::collections::VecDeque;
 use std::io;
@@ -16,13 +17,13 @@ use crate::board::Board;
 use crate::fork::{Fork, Threads};
 use crate::module::{About, Candidate, PLAN, ROBOT, Refusal, ValueSource};
 
-/// Rule that decides when a background module is served.
+/// Rule that decides when a background module exchanges values with a turn break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Service {
-    /// In real time, the module is served at the first turn break at which it waits.
+    /// In real time, the module exchanges values at the first turn break at which it is waiting.
     WhenReady,
-    /// In stepped time, the module is served at the first turn break after its latency. The turn break waits for the
-    /// module, so runs with the same inputs are equal.
+    /// In stepped time, the module exchanges values at the first turn break after its latency has passed. The turn
+    /// break waits for the module, so runs with the same inputs are equal.
     WhenDue,
 }
 
@@ -34,7 +35,7 @@ pub struct Modules<Y> {
     pub(super) board: Board,
     /// Loaded modules in the order in which they were loaded. Every turn break uses this order.
     pub(super) loaded: Vec<LoadedModule<Y>>,
-    /// Order in which worker threads take the modules in a turn.
+    /// Order in which worker threads start the modules in a turn.
     pub(super) order: Vec<usize>,
     pub(super) fork: Fork<Y>,
     pub(super) service: Service,
@@ -74,7 +75,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         })
     }
 
-    /// Creates the modules of a replay. `arrivals` contains the arrivals at the turn breaks of the recorded run, in
+    /// Creates the modules of a replay. `arrivals` contains the arrivals at each turn break of the recorded run, in
     /// order.
     ///
     /// # Errors
@@ -158,8 +159,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// [`Modules::prepare`].
     ///
     /// # Errors
-    /// Fails without any change if the name is taken, or if an attribute has another kind than a reader of the
-    /// attribute expects.
+    /// Fails without any change if the name is taken, or if another module expects a different kind for one of the
+    /// module's attributes.
     pub fn load(&mut self, candidate: Candidate<Y>) -> Result<(), Refusal> {
         let name = Arc::clone(&candidate.name);
         let is_loaded = self.names().any(|(known, _)| known == &*name);

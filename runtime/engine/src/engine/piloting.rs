@@ -22,7 +22,7 @@ use crate::replay::{History, Repeats};
 /// Number of worker threads in real time.
 const WORKERS: usize = 2;
 
-/// An engine: the plans and modules of one robot.
+/// Runs the plans and modules of one robot.
 pub struct Engine<A: EngineAlphabet> {
     plans: Plans<A>,
     modules: Modules<A::Output>,
@@ -215,7 +215,7 @@ impl<A: EngineAlphabet> Engine<A> {
         &mut self.modules
     }
 
-    /// Returns the names of all modules that can be loaded.
+    /// Returns the names of the modules in the library.
     pub fn library(&self) -> impl Iterator<Item = &str> {
         self.loading.library().names()
     }

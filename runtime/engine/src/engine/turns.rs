@@ -37,8 +37,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         fork.turn(y, number, now, seats, deadline);
     }
 
-    /// Performs the first part of the turn break: finds modules that are late or have failed, publishes the values of
-    /// registered modules, and then publishes the values of waiting background modules.
+    /// Performs the first part of the turn break: finds modules that are late or have failed, and publishes the values
+    /// of registered modules and then those of waiting background modules.
     pub fn settle(&mut self) {
         self.arrivals.clear();
         if let Some(replayed) = &mut self.replayed {

@@ -50,7 +50,7 @@ struct Round<Y> {
     cost: Duration,
     /// Position of the next module to be taken.
     next: AtomicUsize,
-    /// Number of modules that have not finished. The control thread waits until it is zero.
+    /// Number of modules that have not finished. The control thread waits until this number is zero.
     left: AtomicU32,
 }
 
@@ -173,7 +173,7 @@ impl<Y> Round<Y> {
         true
     }
 
-    /// Polls for the end of the round until this time; returns `true` if all modules have finished.
+    /// Polls for the end of the round until the time `until`; returns `true` if all modules have finished.
     fn ends_before(&self, until: Instant) -> bool {
         while self.left.load(Ordering::Acquire) > 0 {
             if Instant::now() >= until {

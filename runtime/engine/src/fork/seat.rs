@@ -20,7 +20,8 @@ pub(crate) struct Seat<Y> {
     occupant: Mutex<Occupant<Y>>,
 }
 
-/// A registered module with its values. The thread that runs the module holds the lock; between turns, the engine does.
+/// A registered module with its values, behind a lock. The thread that runs the module holds the lock; between turns,
+/// the engine holds it.
 pub(crate) struct Occupant<Y> {
     module: Box<dyn Module<Y>>,
     pub(crate) ports: Ports,
@@ -81,8 +82,8 @@ impl<Y> Seat<Y> {
         self.progress.store(TurnProgress::Queued as u8, Ordering::Release);
     }
 
-    /// Ends the round for this module at the deadline, so that no thread may start it any more. Returns `true` if a
-    /// thread is running the module, which is then late.
+    /// Ends the round for this module at the deadline: from now on, no thread may start the module. Returns `true` if a
+    /// thread is already running the module, which is then late.
     pub(crate) fn cut(&self) -> bool {
         !self.moved(TurnProgress::Queued, TurnProgress::Skipped)
             && self.moved(TurnProgress::Running, TurnProgress::Late)

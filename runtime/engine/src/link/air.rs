@@ -99,7 +99,7 @@ fn lock<T>(sent: &Mutex<Vec<Sent<T>>>) -> MutexGuard<'_, Vec<Sent<T>>> {
     sent.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Calls `take` with everything that has arrived by `now`, and removes it from `sent`.
+/// Calls `take` with each state or letter that has arrived by `now`, and removes it from `sent`.
 fn arrive<T: Clone>(sent: &Mutex<Vec<Sent<T>>>, now: Nanos, take: &mut dyn FnMut(T)) {
     lock(sent).retain(|sent| {
         let arrives = sent.sent < now && sent.due <= now;
@@ -164,7 +164,7 @@ mod tests {
 
     const TURN: u64 = 100_000_000;
 
-    /// Returns the numbers of the states that arrive in each turn if one state is sent per turn.
+    /// Returns, for each turn, the numbers of the states that arrive in it if one state is sent per turn.
     fn heard(faults: Faults, turns: u64, seed: u64) -> Vec<Vec<u64>> {
         let [mut ada, mut bob] = Air::new(&["ada", "bob"], faults, seed).try_into().ok().unwrap();
         let turn = |number| {

@@ -95,8 +95,8 @@ impl Endpoint {
         state_frame::written(state, times, &self.key)
     }
 
-    /// Prepares a letter to a peer for sending. If the letter contains a plan, an answer is expected from now on,
-    /// unless [`Endpoint::is_unsent`] is called.
+    /// Prepares a letter to a peer for sending. If the letter contains a plan, an answer is expected from now on, until
+    /// [`Endpoint::is_unsent`] is called.
     ///
     /// # Errors
     /// Returns a sentence if the robot and the peer share no key for letters, or if no state of the peer has arrived.
@@ -130,8 +130,8 @@ impl Endpoint {
     /// a state proves the name of the robot.
     ///
     /// # Errors
-    /// Returns the end of a sentence if the source must be closed, because it sends anything other than states and
-    /// letters of one peer, or too many of them.
+    /// Returns the end of a sentence if the source must be closed because it sends anything other than states and
+    /// letters of one peer, or because it sends too many of them.
     pub fn take(&self, source: &mut FrameSource, frame: &[u8]) -> Result<(), String> {
         let now = clock::now();
         if is_letter(frame) {

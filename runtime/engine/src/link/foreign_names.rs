@@ -11,7 +11,7 @@ use crate::attribute::{AttributeName, Reading};
 #[derive(Debug, Default)]
 pub(super) struct ForeignNames(Vec<NamesOf>);
 
-/// Names of the attributes that one robot shares; accepted and refused names together are at most [`ATTRIBUTES`].
+/// Names of the attributes that one robot shares. There are at most [`ATTRIBUTES`] accepted and refused names together.
 #[derive(Debug)]
 struct NamesOf {
     robot: String,

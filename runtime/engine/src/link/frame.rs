@@ -1,4 +1,5 @@
-//! Frames: length, magic number, version, checksum, proof of the key, and body (docs/src/reference/interfaces.md, 6.5).
+//! Frames, which consist of a length, a magic number, a version, a checksum, a proof of the key, and a body
+//! (docs/src/reference/interfaces.md, 6.5).
 
 use std::io;
 use std::sync::Arc;
@@ -92,7 +93,7 @@ impl Challenge {
 pub(super) enum RefusedFrame {
     /// The bytes are not a frame, or were damaged during transmission.
     Garbage,
-    /// The frame has a different version, which is contained here.
+    /// The frame has another version than this program; contains the frame's version.
     Version(u8),
     /// The sender has a different key, or wrote the frame for a different connection.
     Key,

@@ -8,8 +8,8 @@ use mdle_runtime::Nanos;
 use super::sessions::Sessions;
 use super::{State, clock};
 
-/// States of other robots. One lock protects both sessions and states, so that an older state never replaces a newer
-/// one.
+/// States of other robots. One lock protects both the sessions and the states, so that an older state never replaces a
+/// newer one.
 #[derive(Debug, Default)]
 pub(super) struct FreshStates {
     sessions: Sessions,

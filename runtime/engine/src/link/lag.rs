@@ -35,7 +35,8 @@ mod tests {
 
     const MILLISECOND: u64 = 1_000_000;
 
-    /// Returns the lags of frames with these sending and arrival times, all in milliseconds.
+    /// Returns the lag of each frame, in milliseconds. `frames` contains the sending time and the arrival time of each
+    /// frame, also in milliseconds.
     fn lags(frames: impl IntoIterator<Item = (u64, u64)>) -> Vec<u64> {
         let mut lag = Lag::default();
         let of = |(sent, arrival)| lag.of(Nanos(sent * MILLISECOND), Nanos(arrival * MILLISECOND)).0 / MILLISECOND;

@@ -1,5 +1,5 @@
-//! Letters between robots, which contain a plan as text or an answer to a plan. Unlike a state, a letter never replaces
-//! an earlier one.
+//! Letters between robots. A letter contains either a plan as text or an answer to a plan. Unlike a state, a letter
+//! never replaces an earlier one.
 
 use std::time::Duration;
 
@@ -43,7 +43,7 @@ pub enum Content {
         of: u64,
         /// `true` if the plan takes over.
         is_accepted: bool,
-        /// Sentence about when the plan takes over, or why it does not.
+        /// Sentence that says when the plan takes over, or why it does not.
         sentence: String,
     },
 }

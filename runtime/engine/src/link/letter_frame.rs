@@ -25,7 +25,7 @@ pub(super) struct Envelope {
     pub(super) to: String,
     /// Session of the sender.
     pub(super) sent_in: u64,
-    /// Session of the recipient for which the letter is meant.
+    /// Session of the recipient. The letter is valid only in this session.
     pub(super) meant_for: u64,
     /// Time, since the start of the sender's session, at which the letter was posted.
     pub(super) sent: Nanos,

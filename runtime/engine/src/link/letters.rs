@@ -181,7 +181,7 @@ impl ArrivedLetters {
     }
 
     /// Records that a plan was refused and has to be answered. If too many refused plans of a sender wait for an
-    /// answer, further ones are not answered.
+    /// answer, further plans of this sender are not answered.
     fn refuse(&mut self, letter: &Letter, reason: String) {
         let Letter { from, number, .. } = letter;
         if self.refused.iter().filter(|plan| plan.from == *from).count() < UNREAD {

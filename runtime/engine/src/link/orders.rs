@@ -49,7 +49,7 @@ struct ReceivedPlan {
 }
 
 impl PlanExchange {
-    /// Returns the orders of the robot `own`, which does not exchange plans with any robot yet.
+    /// Creates the plan exchange of the robot `own`, which does not exchange plans with any robot yet.
     pub(super) fn of(own: &str) -> Self {
         Self { own: own.to_owned(), ..Self::default() }
     }
@@ -74,7 +74,7 @@ impl PlanExchange {
         Ok(())
     }
 
-    /// Returns the name of the plan that this robot sent in letter `number`, for use in messages; "a plan" if the name
+    /// Returns the name, for use in messages, of the plan that this robot sent in letter `number`; "a plan" if the name
     /// is no longer known.
     fn plan(&self, number: u64) -> String {
         let name = self.names.iter().find(|(sent, _)| *sent == number);
@@ -168,7 +168,8 @@ impl PlanExchange {
 }
 
 impl ReceivedPlan {
-    /// Returns the answer to the sender after an event of the request; `None` if the event requires no answer.
+    /// Returns the answer that the plan's sender receives after an event of the request; `None` if the event requires
+    /// no answer.
     fn answer<A: EngineAlphabet>(&mut self, event: &PlanEvent, plans: &Plans<A>) -> Option<Result<String, String>> {
         let refused = |sentence: &str| Some(Err(sentence.to_owned()));
         match event {

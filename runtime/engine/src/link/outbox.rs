@@ -1,4 +1,4 @@
-//! The newest state and the letters that a robot's turns pass to the sending thread.
+//! The newest state and the letters that the turns of a robot hand to the sending thread.
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, PoisonError};
@@ -25,7 +25,7 @@ pub struct Posted {
     pub draft: FrameDraft,
     /// `true` if the letter contains a plan; an answer is then expected.
     pub is_plan: bool,
-    /// Time after which the letter is no longer sent.
+    /// Time limit after which the letter is no longer sent.
     pub limit: Duration,
 }
 
@@ -45,7 +45,8 @@ struct WaitingFrames {
     letters: VecDeque<Waits>,
 }
 
-/// A letter that has to be sent, or that is kept after it was sent because the connection may break before it arrives.
+/// A letter that has not been sent, or that is kept after it was sent because the connection may break before the
+/// letter arrives.
 struct Waits {
     letter: Posted,
     /// Time at which the letter was posted.

@@ -4,14 +4,14 @@ use mdle_runtime::Nanos;
 
 /// Minimum average time between two plans, in nanoseconds.
 const SPACING: u64 = 1_000_000_000;
-/// Maximum size of a burst of plans, given as the time in nanoseconds that its plans would take at the maximum average
-/// rate.
+/// Maximum size of a burst of plans, expressed in nanoseconds: the time that the burst's plans take at the maximum
+/// average rate.
 const BURST: u64 = 4 * SPACING;
 
 /// Rate limiter for the plans of one robot.
 #[derive(Debug, Default)]
 pub(super) struct RateLimiter {
-    /// Time from which a full burst of plans is permitted again.
+    /// Time at or after which a full burst of plans is permitted again.
     rested: Nanos,
     /// `true` if the last plan came too early.
     is_too_fast: bool,
@@ -22,9 +22,9 @@ pub(super) struct RateLimiter {
 pub(super) enum Admission {
     /// The plan is accepted.
     Taken,
-    /// The plan comes too soon after a plan that was accepted.
+    /// The plan comes too soon after the previous accepted plan.
     TooFast,
-    /// The plan comes too soon, and so did the previous plan.
+    /// The plan comes too soon, as the previous plan did.
     StillTooFast,
 }
 

@@ -23,7 +23,7 @@ struct UnansweredPlan {
     at: Instant,
     /// Number of answers that have arrived.
     answers: u8,
-    /// `true` until an answer has arrived or the missing answer was reported.
+    /// `true` until an answer arrives, or until the lack of an answer has been reported.
     is_open: bool,
 }
 

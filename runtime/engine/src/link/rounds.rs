@@ -9,7 +9,7 @@ use mdle_runtime::Plan;
 pub(super) struct Rounds {
     counts: Vec<(&'static str, u64)>,
     passes: Passes,
-    /// Number, counted from 1, of the plan whose scopes were counted last; 0 before the first plan.
+    /// Number of the plan whose scopes were counted last, counted from 1; 0 before the first plan.
     plan: u64,
 }
 

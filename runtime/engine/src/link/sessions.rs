@@ -14,7 +14,7 @@ const OVER: usize = 256;
 #[derive(Debug, Default)]
 pub(super) struct Sessions(BTreeMap<String, RobotSession>);
 
-/// The current session of a robot.
+/// The current session of a robot, and the sessions that have ended.
 #[derive(Debug)]
 struct RobotSession {
     session: u64,

@@ -38,7 +38,7 @@ impl FrameSource {
         Self { robot: Some(robot.to_owned()), ..Self::of_connection(Challenge::NONE) }
     }
 
-    /// Returns the name of the robot; `None` until a frame has proved it.
+    /// Returns the name of the robot; `None` before a frame has proved the name.
     #[must_use]
     pub fn robot(&self) -> Option<&str> {
         self.robot.as_deref()

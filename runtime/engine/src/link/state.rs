@@ -15,7 +15,8 @@ pub struct State {
     pub session: u64,
     /// Number of the state, counted from 1. Within a session, states with higher numbers were sent later.
     pub number: u64,
-    /// Age of the state on arrival. The minimum transmission time of the source is not included, because it is unknown.
+    /// Age of the state on arrival. The age does not include the minimum transmission time of the source, which is
+    /// unknown.
     pub age: Nanos,
     /// Pose by odometry, in the coordinates that all robots share.
     pub pose: Pose,
@@ -41,8 +42,8 @@ pub struct SharedValue {
 }
 
 impl SharedValue {
-    /// Returns the name that the attribute has on other robots. The name of its module is preceded there by `robot`,
-    /// the name of the robot that shares it.
+    /// Returns the name that the attribute has on other robots: there, the module's name is preceded by `robot`, the
+    /// name of the robot that shares the attribute.
     #[must_use]
     pub fn name_from(&self, robot: &str) -> AttributeName {
         let AttributeName { module, attribute } = &self.name;

@@ -23,7 +23,8 @@ pub struct StateLink {
     /// The newest state of each other robot.
     known: Vec<NewestState>,
     rounds: Rounds,
-    /// Modules whose attributes the robot shares; each entry reads the attribute `age` of such a module.
+    /// Modules whose attributes the robot shares. Each module is represented by an entry that reads its attribute
+    /// `age`.
     shares: &'static [ModuleRead],
     /// Names of the attributes that other robots share.
     foreign: ForeignNames,
@@ -98,7 +99,8 @@ impl StateLink {
         self.orders.decide(&mut *self.link, plans, now)
     }
 
-    /// Returns the modules whose attributes the robot shares; each entry reads the attribute `age` of such a module.
+    /// Returns the modules whose attributes the robot shares. Each module is represented by an entry that reads its
+    /// attribute `age`.
     pub(crate) fn shares(&self) -> &'static [ModuleRead] {
         self.shares
     }
@@ -176,7 +178,7 @@ impl StateLink {
         self.link.messages(say);
     }
 
-    /// Returns the known state of the robot with this name.
+    /// Returns the state of the robot `robot` as far as it is known at time `now`.
     fn peer(&self, robot: &'static str, now: Nanos) -> Peer {
         let known = self.known.iter().find(|known| known.state.name == robot);
         let state = known.map(|NewestState { state, at, .. }| PeerState {

@@ -21,7 +21,7 @@ pub trait Background: Send + 'static {
     fn run(self: Box<Self>, exchange: Exchange) -> Result<(), Fault>;
 }
 
-/// Signal that the module has to end, because the engine ends or the module is unloaded.
+/// Signals that the module has to end, because the engine ends or the module is unloaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stopped;
 
@@ -113,7 +113,7 @@ pub(crate) struct Gate {
 struct BreakMeeting {
     /// `true` once the module may run.
     has_begun: bool,
-    /// Values of a module that waits for a turn break; `None` if the module does not wait.
+    /// Values that a waiting module offers to the next turn break; `None` if the module does not wait.
     offered: Option<Ports>,
     /// Values that a turn break has returned to the module; `None` once the module has taken them.
     returned: Option<Ports>,
@@ -151,7 +151,7 @@ impl Gate {
         self.changed.wait(meeting).unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits, on the module's thread, until the module may run; returns `false` if it was stopped before.
+    /// Waits, on the module's thread, until the module may run; returns `false` if the module was stopped before.
     pub(crate) fn wait_for_begin(&self) -> bool {
         let mut meeting = self.lock();
         while !meeting.has_begun && !meeting.is_stopped {
@@ -218,8 +218,8 @@ impl Gate {
         false
     }
 
-    /// Returns the reason why the module's thread has ended. Returns `None` before the end, after the reason was
-    /// returned once, and while the module holds the lock.
+    /// Returns the reason why the module's thread has ended. Returns `None` before the thread has ended, after the
+    /// reason was returned once, and while the module holds the lock.
     pub(crate) fn take_end(&self) -> Option<ThreadEnd> {
         self.meeting.try_lock().ok()?.ended.take()
     }
@@ -230,7 +230,7 @@ impl Gate {
         self.changed.notify_all();
     }
 
-    /// Waits for the module's thread to end, at most for this time.
+    /// Waits at most `patience` for the module's thread to end.
     pub(crate) fn wait_for_end(&self, patience: Duration) {
         let lasts = |meeting: &mut BreakMeeting| !meeting.has_ended;
         drop(self.changed.wait_timeout_while(self.lock(), patience, lasts));

@@ -64,20 +64,20 @@ pub enum Refusal {
     Reserved(String),
     /// No module of this name is loaded.
     Unknown(String),
-    /// The module with this name exists, but will make no further turn.
+    /// A module with this name exists, but it will never make another turn.
     Over(String),
     /// A module has no such setting; contains the names of the module and of the setting.
     NoSetting(String, String),
-    /// A new value for a setting has another kind than the setting; contains the path and the kind of the setting, and
-    /// the kind of the value.
+    /// The new value for a setting has another kind than the setting. Contains the path and the kind of the setting,
+    /// and the kind of the value.
     OtherSetting(AttributeName, AttributeKind, AttributeKind),
-    /// A new value for a setting is NaN; contains the path of the setting.
+    /// The new value for a setting is NaN; contains the path of the setting.
     NotANumber(AttributeName),
     /// The declaration of the module is invalid; contains the name of the module, and a sentence.
     Declaration(String, String),
     /// The function that creates the module panicked; contains the name of the module, and the panic message.
     Panicked(String, String),
-    /// A module expects another kind for an attribute than the kind with which the attribute is published.
+    /// A module that reads an attribute expects another kind than the attribute has.
     OtherKind {
         /// Name of the module that reads the attribute.
         reader: String,

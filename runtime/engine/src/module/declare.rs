@@ -48,11 +48,11 @@ pub(crate) enum ValueSource {
 pub struct About {
     /// Name of the attribute or setting in its module.
     pub name: Arc<str>,
-    /// Kind of the attribute's values.
+    /// Kind of the values.
     pub kind: AttributeKind,
     /// Unit in which users read and write the value; `None` for a kind without units.
     pub unit: Option<Unit>,
-    /// Description of the attribute, as a sentence.
+    /// Description of the attribute or setting, as a sentence.
     pub doc: &'static str,
 }
 
@@ -109,13 +109,14 @@ impl Declare {
     }
 
     /// Declares that this module reads an attribute of another module. The other module may be loaded later or never.
-    /// If it publishes the attribute with another kind, the module that is loaded last is refused.
+    /// If that module publishes the attribute with another kind, the one of the two modules that is loaded last is
+    /// refused.
     pub fn reads<T: Attribute>(&mut self, module: &str, attribute: &str) -> In<T> {
         In::new(self.reads_as(module, attribute, T::KIND))
     }
 
-    /// Declares that this module reads an attribute of another module with the kind `kind`; returns the index of the
-    /// attribute.
+    /// Declares that this module reads an attribute of another module, and expects its values to have the kind `kind`;
+    /// returns the index of the attribute.
     pub(crate) fn reads_as(&mut self, module: &str, attribute: &str, kind: AttributeKind) -> usize {
         for name in [module, attribute] {
             self.check_name(name);
@@ -172,8 +173,8 @@ impl Declare {
     }
 
     /// Sets the time that a background module needs for one exchange, 0 by default. In stepped time, the module's next
-    /// exchange takes place at the first turn break after this time has passed on the engine's clock, whatever the
-    /// speed of the computer is. A plan that reads the module waits this much longer for the module's first values.
+    /// exchange takes place at the first turn break after this time has passed on the engine's clock, regardless of the
+    /// computer's speed. A plan that reads the module waits this much longer for the module's first values.
     pub fn latency(&mut self, latency: Nanos) {
         self.declared.latency = latency;
     }

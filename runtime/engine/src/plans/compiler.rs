@@ -16,8 +16,8 @@ const WAITING: usize = 16;
 pub(crate) enum Compiler<A: EngineAlphabet> {
     /// A separate thread, which ends when this value is dropped.
     Thread(CompilerThread<A>),
-    /// A function that carries out each order immediately, so that runs with the same inputs are equal, and the
-    /// outcomes of these orders.
+    /// Carries out each order immediately, so that runs with the same inputs are equal. Contains the function that
+    /// compiles, and the outcomes of finished orders.
     AtOnce(Box<Compile<A>>, VecDeque<Outcome<A>>),
 }
 

@@ -62,7 +62,7 @@ pub enum PlanEvent {
     Cancelled(u32),
     /// The plan has taken over, and made its first turn.
     Began(u32),
-    /// The trial of the plan is over, and the plan that it replaced is dropped.
+    /// The trial of the plan is over, and the plan that was replaced is dropped.
     Accepted(u32),
     /// The plan on trial was ended, and the plan that it replaced continues.
     RolledBack {

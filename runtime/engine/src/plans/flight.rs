@@ -1,4 +1,4 @@
-//! A plan's turn with all data that it needs, which threads pass to each other.
+//! The data of a plan's turn, which threads pass to each other.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -25,7 +25,7 @@ pub(crate) struct Flight<A: Alphabet> {
     pub(crate) at: Nanos,
 }
 
-/// Time of the turn.
+/// The desk: storage through which the engine passes a plan's turn to the module that makes the turn, and gets it back.
 pub(crate) struct Desk<A: Alphabet>(Mutex<OnDesk<A>>);
 
 struct OnDesk<A: Alphabet> {
@@ -97,7 +97,7 @@ impl<A: EngineAlphabet> Flight<A> {
     }
 }
 
-/// Module that makes the turns of plans: in each turn, it makes the plan's turn that is stored for it.
+/// Module that makes the turns of plans: in each turn, it makes the plan's turn that is stored on the desk.
 pub(crate) struct PlanModule<A: Alphabet>(pub(crate) Arc<Desk<A>>);
 
 impl<A: EngineAlphabet> Module<A::Output> for PlanModule<A> {

@@ -33,10 +33,10 @@ pub struct CompiledPlans<A: EngineAlphabet> {
     pub warnings: String,
 }
 
-/// A function that compiles and loads the plans of a text.
+/// A function that compiles and loads the plans in a source text.
 ///
 /// # Errors
-/// Fails with the diagnostics in readable form.
+/// Fails with the diagnostics as text for people.
 pub type Compile<A> = dyn Fn(&PlanSource) -> Result<CompiledPlans<A>, String> + Send;
 
 /// A request that takes longer than a turn allows.
@@ -56,7 +56,7 @@ pub(crate) enum SlowTask<A: EngineAlphabet> {
 /// Result of an order.
 pub(crate) struct Outcome<A: EngineAlphabet> {
     pub(crate) ticket: u32,
-    /// The resulting plans, or the diagnostics in readable form.
+    /// The resulting plans, or the diagnostics as text for people.
     pub(crate) product: Result<Product<A>, String>,
 }
 

@@ -1,5 +1,5 @@
-//! Handles the requests of other robots that a new plan replace the current plan. They are refused after a safety rule
-//! has replaced or ended a plan.
+//! Handles the requests in which other robots ask that a new plan replace the current plan. Such requests are refused
+//! after a safety rule has replaced or ended a plan.
 
 use super::PlanEvent;
 

@@ -143,8 +143,8 @@ pub(crate) fn check(reader: &str, reads: &[ModuleRead], board: &Board) -> Result
     reads.iter().try_for_each(check)
 }
 
-/// Returns the age, at time `now`, of the oldest of these attributes. For an attribute that was never published, this
-/// is the age of the run.
+/// Returns the age, at time `now`, of the oldest value of these attributes. An attribute that was never published is as
+/// old as the run.
 pub(crate) fn oldest<'r>(reads: impl Iterator<Item = &'r ModuleRead>, board: &Board, now: Nanos) -> Nanos {
     let age = |read: &ModuleRead| {
         let at = match read.attribute {

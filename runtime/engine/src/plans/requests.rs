@@ -67,17 +67,17 @@ impl<A: EngineAlphabet> Plans<A> {
         Ok(())
     }
 
-    /// Requests to store the plans of a text; returns the number of the request. The answer at a later turn break is
-    /// [`PlanEvent::Stored`] or [`PlanEvent::Refused`].
+    /// Requests that the plans in a source text be stored; returns the number of the request. The answer at a later
+    /// turn break is [`PlanEvent::Stored`] or [`PlanEvent::Refused`].
     pub fn load(&mut self, source: PlanSource) -> u32 {
         self.order(SlowTask::Compile(source, None))
     }
 
-    /// Requests that the plan of a text take over; returns the number of the request. The plan is also stored, unless
-    /// another robot has sent it. The answer at a later turn break is [`PlanEvent::Refused`], or [`PlanEvent::Armed`]
-    /// and then [`PlanEvent::Began`]. A later request supersedes this request before it is compiled, and replaces its
-    /// plan if the plan is armed but has not begun. However, a request of another robot never supersedes or replaces a
-    /// request of the operator: it is refused while a plan of the operator is armed.
+    /// Requests that the plan in a source text take over; returns the number of the request. The plan is also stored,
+    /// unless another robot has sent it. The answer at a later turn break is [`PlanEvent::Refused`], or
+    /// [`PlanEvent::Armed`] and then [`PlanEvent::Began`]. A later request supersedes this request before it is
+    /// compiled, and replaces its plan if the plan is armed but has not begun. However, a request of another robot
+    /// never supersedes or replaces a request of the operator: it is refused while a plan of the operator is armed.
     pub fn swap(&mut self, source: PlanSource, when: When) -> u32 {
         self.order(SlowTask::Compile(source, Some(when)))
     }
@@ -91,8 +91,8 @@ impl<A: EngineAlphabet> Plans<A> {
         Ok(self.order(SlowTask::Begin(plan, when)))
     }
 
-    /// Requests that a plan take over that is already loaded; returns the number of the request. The plan is armed at
-    /// once.
+    /// Requests that `plan`, which is already loaded, take over; returns the number of the request. The plan is armed
+    /// at once.
     pub fn replace(&mut self, plan: LoadedPlan<A>, when: When) -> u32 {
         self.last = self.last.saturating_add(1);
         let number = self.last;

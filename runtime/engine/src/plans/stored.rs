@@ -16,7 +16,7 @@ pub struct StoredPlan<A: EngineAlphabet> {
     pub name: Arc<str>,
     /// Name and text of each file of the plan, the plan's own file first.
     pub files: Arc<[(String, String)]>,
-    /// The plan before it begins.
+    /// The plan as loaded, before it begins.
     pub loaded: Arc<Loaded<A>>,
     /// Facts about the plan, for the operator.
     pub facts: PlanFacts,

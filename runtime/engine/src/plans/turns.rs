@@ -77,7 +77,7 @@ impl<A: EngineAlphabet> Plans<A> {
         None
     }
 
-    /// Takes the plan's turn at time `now` back from the plan module, and writes the active plan's transitions to
+    /// Takes the plan's turn at time `now` back from the plan module, and copies the active plan's transitions to
     /// `transitions`.
     pub(crate) fn land(&mut self, now: Nanos, transitions: &mut Transitions) -> PlanTurn<A::Input> {
         let Landed { flight, replaced, panic } = self.desk.take();
@@ -242,7 +242,7 @@ impl<A: EngineAlphabet> Plans<A> {
         std::mem::replace(&mut self.driving, driving).ticket
     }
 
-    /// Replaces the active plan. If the active plan has panicked or hangs, it is left to its thread.
+    /// Replaces the active plan. If the active plan has panicked or hangs, it remains with its thread.
     fn take_over(&mut self, plan: Running<A>) {
         match &mut self.current {
             Some(flight) => {

@@ -83,7 +83,7 @@ impl Child {
     }
 
     /// Sends a line, and returns the answer as [`Child::line`] does. Refuses a child that has printed something before
-    /// the line is sent, because its answers would be one line ahead from then on.
+    /// the line is sent, because the child's answers would be one line ahead from then on.
     pub(super) fn ask(
         &mut self,
         line: &[u8],
@@ -189,7 +189,7 @@ impl Child {
         })
     }
 
-    /// Waits for the child to end, at most for this time; returns its status if it has ended.
+    /// Waits at most `time` for the child to end; returns its status if it has ended.
     fn status_within(&mut self, time: Duration) -> Option<ExitStatus> {
         let begun = Instant::now();
         loop {

@@ -17,7 +17,7 @@ const KEYS: [&str; 3] = ["publishes", "reads", "latency"];
 pub(super) struct Declaration {
     publishes: Vec<(String, LineForm)>,
     reads: Vec<(AttributeName, LineForm)>,
-    /// In stepped time, the time between sending a line to the child and its answer.
+    /// Time, in stepped time, between sending a line to the child and reading the child's answer.
     latency: Nanos,
 }
 

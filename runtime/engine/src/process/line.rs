@@ -52,7 +52,7 @@ impl LineForm {
         words.join(", ")
     }
 
-    /// Returns a value of this form from a line.
+    /// Converts `json`, a value from a line, to a value of this form.
     ///
     /// # Errors
     /// Fails with a description of the expected value.
@@ -81,7 +81,7 @@ impl LineForm {
         value.ok_or_else(|| self.expected())
     }
 
-    /// Returns a description of the value that a line must have.
+    /// Returns a description of the value that a line must contain.
     fn expected(self) -> String {
         match (self.kind, self.unit) {
             (AttributeKind::Flag, _) => "true or false".to_owned(),
@@ -118,8 +118,8 @@ impl LineForm {
     }
 }
 
-/// Reads a number from a line; `None` if the value is not a number. JSON cannot represent infinite numbers and NaN, so
-/// they are strings here.
+/// Reads a number from a line; `None` if the value is not a number. Infinite numbers and NaN are strings in `json`,
+/// because JSON cannot represent them as numbers.
 fn number(json: &Json) -> Option<f64> {
     match json.as_str() {
         Some("NaN") => Some(f64::NAN),

@@ -20,7 +20,7 @@ use declaration::Declaration;
 
 /// Maximum time from the start of a child to its declaration.
 const DECLARATION: Duration = Duration::from_secs(10);
-/// Maximum time between sending a line to the child and its answer.
+/// Maximum time between sending a line to the child and reading the child's answer.
 const ANSWER: Duration = Duration::from_secs(10);
 /// Maximum number of characters of a child's line that a message shows.
 const SHOWN: usize = 60;

@@ -1,4 +1,4 @@
-//! Names and texts of the single rules in a safety file.
+//! Names and texts of the individual rules in a safety file.
 
 use super::{Rules, Then};
 

@@ -7,7 +7,7 @@ use mdle_runtime::{Nanos, Radians};
 
 use super::Fence;
 
-/// Rules of a safety file. Without rules, every input of finite numbers is sent unchanged.
+/// Rules of a safety file. Without rules, every input that consists of finite numbers is sent unchanged.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Rules {
     /// Limits of inputs.
@@ -82,7 +82,7 @@ pub struct ConditionText {
 /// Consequence of a rule. The order is the order of strictness; the weakest consequence comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Then {
-    /// The robot gets no forward speed, and may drive backwards.
+    /// The robot gets no forward speed, but may drive backwards.
     HoldForward,
     /// The robot gets the null input.
     Hold,

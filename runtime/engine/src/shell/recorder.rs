@@ -86,7 +86,7 @@ impl RecorderPart {
         }
     }
 
-    /// Passes the turn that was made to the writing thread if a record is being written.
+    /// Passes the turn that has just been made to the writing thread if a record is being written.
     pub(super) fn made<A>(&mut self, moment: &Break<'_, Engine<A>>)
     where
         A: EngineAlphabet<Input = Twist>,

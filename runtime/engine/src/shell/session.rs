@@ -136,7 +136,7 @@ where
     A: EngineAlphabet<Input = Twist>,
     A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
 {
-    /// Serves requests. Waits for a request for at most the time `wait`; `None` means no waiting.
+    /// Serves requests. Waits at most `wait` for a request; `None` means no waiting.
     fn serve(&mut self, moment: &mut Break<'_, Engine<A>>, wait: Option<Duration>) {
         let Self { desk, parts, .. } = self;
         let has_changed = match wait {

@@ -95,7 +95,7 @@ impl Desk {
         served
     }
 
-    /// Waits for a change for at most the time `time`, and carries it out. Returns `true` if there was a change.
+    /// Waits at most `time` for a change, and carries the change out. Returns `true` if there was a change.
     pub fn wait<M: ?Sized>(&mut self, parts: &mut [&mut dyn Served<M>], moment: &mut M, time: Duration) -> bool {
         let request = self.requests.recv_timeout(time);
         self.begin_break();

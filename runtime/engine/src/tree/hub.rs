@@ -53,7 +53,7 @@ impl Hub {
     }
 
     /// Returns the next answer to a request whose front end has stopped waiting, or the next report of a watched
-    /// attribute: time, path and value. Waits for a report for at most the time `wait`.
+    /// attribute: time, path and value. Waits at most `wait`.
     #[must_use]
     pub fn report(&self, wait: Duration) -> Option<String> {
         if let Some(answer) = self.late_answer() {
@@ -68,9 +68,9 @@ impl Hub {
         self.wait(request, Duration::MAX, &mut || ())
     }
 
-    /// Carries out a request and returns the answer. Waits for at most the time `patience` until a turn break has
-    /// carried out a change; after that time, [`Hub::report`] returns the answer. Calls `meanwhile` at intervals while
-    /// it waits. After the run, only read requests are answered.
+    /// Carries out a request and returns the answer. If the request is a change, waits at most `patience` until a turn
+    /// break has carried it out; an answer after that time is returned by [`Hub::report`]. Calls `meanwhile` at
+    /// intervals while it waits. After the run, only read requests are answered.
     #[must_use]
     pub fn wait(&self, request: Request, patience: Duration, meanwhile: &mut dyn FnMut()) -> Answer {
         let Some(snapshot) = self.snapshot() else { return Answer::Ended };

@@ -14,7 +14,7 @@ use crate::{Ended, Observer, PlanPosition};
 
 /// Observer of a robot whose world is unknown.
 pub(crate) struct ByOdometry {
-    /// Text about the run for titles.
+    /// Text that describes the run in titles.
     setup: String,
     watch: Option<Watch>,
     plot: Option<WholeFile>,

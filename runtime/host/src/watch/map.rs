@@ -12,7 +12,7 @@ const AROUND: f64 = 0.3;
 const BODY_LEAST: f64 = 2.5;
 /// Number of dots of a body's edge.
 const BODY_DOTS: u32 = 60;
-/// Arrows for eight directions of a robot, counter-clockwise from the first axis.
+/// Arrows for eight headings of a robot, counter-clockwise from the direction of the x axis.
 const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
 
 /// A map for one size of the terminal.

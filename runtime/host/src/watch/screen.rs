@@ -167,7 +167,7 @@ fn write(text: &str) {
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
-/// Writes the remaining picture and then `text`, for at most the maximum time for restoring the terminal.
+/// Writes the remaining picture and then `text`, but gives up after the maximum time for restoring the terminal.
 fn write_to_the_end(text: &str) {
     let mut terminal = terminal();
     let Some(terminal) = terminal.as_mut() else {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Arg, ArgMatches, Command};
 use mdle_quantity::Quantity;
 
-/// Source of the sound that `--ears` names.
+/// Source of sound, which the option `--ears` names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum EarsOption {
     /// The robot's own microphones.

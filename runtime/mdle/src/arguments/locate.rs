@@ -9,9 +9,9 @@ use crate::evidence::USUAL_POSE;
 /// The arguments of `mdle locate`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Locate {
-    /// File of the record; `-` means standard input.
+    /// Path of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// YAML files of the maps.
+    /// Paths of the maps' YAML files.
     pub(crate) maps: Vec<PathBuf>,
     /// Pose near which the record began, as typed by the user, in the coordinates of each map.
     pub(crate) at: String,

@@ -7,18 +7,18 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 /// The arguments of `mdle log`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Log {
-    /// `mdle log info`; contains the file of the record.
+    /// `mdle log info`; contains the path of the record.
     Info(PathBuf),
-    /// `mdle log cut`; contains the file of the record, the time of the last turn, and the file of the new record.
+    /// `mdle log cut`; contains the path of the record, the time of the last turn, and the path of the new record.
     Cut(PathBuf, String, PathBuf),
     /// `mdle log export`.
     Export {
-        /// File of the record.
+        /// Path of the record.
         log: PathBuf,
-        /// `Some` to write a script instead of a table. Contains the file of the plan, if the record does not contain
-        /// the plan.
+        /// `Some` to write a script instead of a table. Contains the path of the plan's file, if the record does not
+        /// contain the plan.
         script: Option<Option<PathBuf>>,
-        /// File to write; `None` means standard output.
+        /// Path of the file to write; `None` means standard output.
         file: Option<PathBuf>,
     },
 }

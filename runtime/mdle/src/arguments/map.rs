@@ -9,13 +9,13 @@ use crate::evidence::USUAL_POSE;
 /// The arguments of `mdle map`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct MakeMap {
-    /// File of the record; `-` means standard input.
+    /// Path of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// YAML file to write. The image is written to the same folder.
+    /// Path of the YAML file to write. The image is written to the same folder.
     pub(crate) file: PathBuf,
     /// Pose of the robot at the start of the record, as typed by the user, in map coordinates.
     pub(crate) at: String,
-    /// PNG file to write in addition; `None` if no PNG is requested.
+    /// Path of a PNG file to write in addition; `None` if no PNG is requested.
     pub(crate) png: Option<PathBuf>,
 }
 

@@ -13,7 +13,7 @@ pub(super) const OPTIONS: [&str; 2] = ["--map", "--map-at"];
 /// The map to create in a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct MapOption {
-    /// YAML file to write.
+    /// Path of the YAML file to write.
     pub(crate) file: PathBuf,
     /// Pose of the robot at the start of the run, as typed by the user, in map coordinates.
     pub(crate) at: String,

@@ -8,7 +8,7 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 /// The arguments of `mdle navigate`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Navigate {
-    /// File whose plans are the edges of the graph.
+    /// Path of the graph: a file whose plans are the edges of the graph.
     pub(crate) graph: PathBuf,
     /// Landmark at which the robot begins.
     pub(crate) from: String,
@@ -16,7 +16,7 @@ pub(crate) struct Navigate {
     pub(crate) to: String,
     /// Name or folder of the target; `None` for the target that the `mdle.toml` beside the graph names.
     pub(crate) target: Option<String>,
-    /// File of the landmarks; `None` for the file `landmarks.toml` beside the graph.
+    /// Path of the landmark file; `None` for the file `landmarks.toml` beside the graph.
     pub(crate) landmarks: Option<PathBuf>,
     /// Program name and arguments of this call, without the options of the run.
     pub(crate) words: Vec<OsString>,

@@ -8,11 +8,11 @@ use mdle_host::output_format;
 /// The arguments of `mdle plot`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Plot {
-    /// File of the record; `-` means standard input.
+    /// Path of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// SVG file to write.
+    /// Path of the SVG file to write.
     pub(crate) file: PathBuf,
-    /// File of the plan; `None` to use the plan in the record.
+    /// Path of the plan's file; `None` to use the plan in the record.
     pub(crate) plan: Option<PathBuf>,
     /// `true` to draw a chart over time instead of the path.
     pub(crate) is_over_time: bool,

@@ -7,15 +7,15 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 /// The arguments of `mdle replay`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Replay {
-    /// File of the record; `-` means standard input.
+    /// Path of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// File of the plan; `None` to use the plan in the record.
+    /// Path of the plan's file; `None` to use the plan in the record.
     pub(crate) plan: Option<PathBuf>,
     /// Time of the last turn to replay, as typed by the user; `None` to replay all turns.
     pub(crate) until: Option<String>,
     /// `true` to step through the turns with commands.
     pub(crate) steps: bool,
-    /// File of the step commands; `None` means standard input.
+    /// Path of the file with the step commands; `None` means standard input.
     pub(crate) commands: Option<PathBuf>,
 }
 

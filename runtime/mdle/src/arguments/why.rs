@@ -7,9 +7,9 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 /// The arguments of `mdle why`.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Why {
-    /// File of the record; `-` means standard input.
+    /// Path of the record; `-` means standard input.
     pub(crate) log: PathBuf,
-    /// File of the plan; `None` to use the plan in the record.
+    /// Path of the plan's file; `None` to use the plan in the record.
     pub(crate) plan: Option<PathBuf>,
     /// The question about the record.
     pub(crate) question: Question,

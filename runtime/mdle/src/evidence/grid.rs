@@ -38,7 +38,7 @@ pub(crate) struct GridPing {
 /// A square grid, centred on the origin of its coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct EvidenceGrid {
-    /// Log-odds of the cells, ordered row by row along the second axis.
+    /// Log-odds of the cells, row by row in the order of the y coordinates.
     odds: Vec<f64>,
 }
 
@@ -62,7 +62,7 @@ impl EvidenceGrid {
         }
     }
 
-    /// Creates a grid with these probabilities, which are ordered row by row along the second axis.
+    /// Creates a grid with these probabilities, which are given row by row in the order of the y coordinates.
     pub(super) fn of(probabilities: impl Iterator<Item = f64>) -> Self {
         let odds = |p: f64| libm::log(p / (1.0 - p)).clamp(-MOST, MOST);
         Self { odds: probabilities.map(odds).collect() }
@@ -73,20 +73,20 @@ impl EvidenceGrid {
         cell_at(x, y).and_then(|cell| self.odds.get(cell)).copied().unwrap_or_default()
     }
 
-    /// Returns the log-odds of all cells, ordered row by row along the second axis.
+    /// Returns the log-odds of all cells, row by row in the order of the y coordinates.
     pub(super) fn odds(&self) -> impl Iterator<Item = f64> {
         self.odds.iter().copied()
     }
 
-    /// Returns the probability that a cell is occupied. `column` counts along the first axis, `row` along the second.
+    /// Returns the probability that a cell is occupied. `column` counts along the x axis, `row` along the y axis.
     pub(crate) fn probability(&self, column: usize, row: usize) -> f64 {
         let odds = self.odds.get(row * CELLS + column).copied().unwrap_or_default();
         1.0 / (1.0 + libm::exp(-odds))
     }
 }
 
-/// Returns the index of the cell at a position; `None` outside the grid. Cells are ordered row by row along the second
-/// axis.
+/// Returns the index of the cell at a position; `None` outside the grid. Cells are numbered row by row in the order of
+/// the y coordinates.
 pub(super) fn cell_at(x: f64, y: f64) -> Option<usize> {
     let [column, row] = [x, y].map(|at| libm::floor((at + HALF) / CELL));
     let inside = 0.0..CELLS as f64;
@@ -106,7 +106,7 @@ fn near(position: f64, reach: f64) -> std::ops::Range<usize> {
 }
 
 /// Returns the change in a cell's log-odds that a ping causes. `x` and `y` are the cell's coordinates relative to the
-/// transducer, in metres; `sin` and `cos` are those of the transducer's direction.
+/// transducer, in metres; `sin` and `cos` are the sine and the cosine of the transducer's direction.
 fn evidence(x: f64, y: f64, (sin, cos): (f64, f64), ping: &GridPing) -> f64 {
     let (ahead, aside) = (x * cos + y * sin, y * cos - x * sin);
     // Nine cells in ten lie outside the wider cone or behind the transducer, and need no angle.
@@ -133,7 +133,7 @@ fn evidence(x: f64, y: f64, (sin, cos): (f64, f64), ping: &GridPing) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns the probability at a position, after pings of these ranges along the first axis from the origin.
+    /// Returns the probability at a position, after pings of these ranges along the x axis from the origin.
     fn after(ranges: &[Option<f64>], x: f64, y: f64) -> f64 {
         let mut grid = EvidenceGrid::new();
         for range in ranges {

@@ -21,7 +21,7 @@ impl PingOrder {
         Self { origin, last: [None; SONARS] }
     }
 
-    /// Returns the pings of an output that no earlier output contained.
+    /// Returns the pings in `y` that no earlier output contained.
     pub(crate) fn take(&mut self, y: &Sensed) -> Vec<GridPing> {
         let radius = y.shape.ring_radius;
         let mut new = Vec::new();

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 /// Grey value of a free cell.
 const WHITE: f64 = 255.0;
 
-/// Returns the image as the bytes of a PGM file. The first row of the image has the greatest second coordinate.
+/// Returns the image as the bytes of a PGM file. The first row of the image has the greatest y coordinate.
 pub(super) fn pixels(grid: &EvidenceGrid) -> Vec<u8> {
     let mut bytes = head().into_bytes();
     bytes.extend(greys(grid));
@@ -32,7 +32,7 @@ pub(super) fn png_pixels(grid: &EvidenceGrid) -> Result<Vec<u8>, EncodingError> 
     Ok(file)
 }
 
-/// Returns the grey values of the cells, row by row. The first row is the one with the greatest second coordinate.
+/// Returns the grey values of the cells, row by row. The first row is the one with the greatest y coordinate.
 fn greys(grid: &EvidenceGrid) -> Vec<u8> {
     let cells = (0..CELLS).rev().flat_map(|row| (0..CELLS).map(move |column| (column, row)));
     cells.map(|(column, row)| libm::round(WHITE * (1.0 - grid.probability(column, row))) as u8).collect()

@@ -48,7 +48,7 @@ impl SavedMap {
     ///
     /// # Errors
     /// Fails if the name does not end in `.yaml` or `.yml`, if the file or the image beside it cannot be read, or if
-    /// the image is not that of a landmark's map.
+    /// the image is not the image of a landmark's map.
     pub(crate) fn read(file: &Path) -> Result<Self, Failure> {
         let image = ros_image::image(file)?;
         let unread = |of: &Path, why: &dyn std::fmt::Display| {

@@ -38,7 +38,7 @@ pub(super) fn export(log: &Path, file: Option<&Path>) -> Result<ExitCode, Failur
 /// Writer of lines to a file or to standard output.
 pub(super) struct TableWriter {
     out: Box<dyn Write>,
-    /// The file; `None` means standard output.
+    /// Path of the file; `None` means standard output.
     file: Option<PathBuf>,
 }
 

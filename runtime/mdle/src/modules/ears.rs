@@ -9,7 +9,7 @@ use mdle_sound::{Localizer, RATE, WINDOW};
 
 use super::audio::Audio;
 
-/// Range that is published, because two ears cannot measure a range.
+/// Range that the module publishes for every sound, because two ears cannot measure a range.
 const RANGE: Meters = Meters(2.0);
 /// Time, in seconds, for which a bearing is published even if no new sound confirms it.
 const REMEMBERED: f64 = 5.0;

@@ -27,13 +27,13 @@ pub(crate) struct MapRun {
     making: Arc<Mutex<Making>>,
 }
 
-/// Pings that the robot has heard.
+/// Pings that the module `pings` has stored.
 #[derive(Debug)]
 struct MapPings {
     order: PingOrder,
     /// Pings that have not been added to the map yet, with the times of their turns.
     waiting: VecDeque<(Nanos, GridPing)>,
-    /// Number of pings that have been heard so far.
+    /// Number of pings that have been stored so far.
     count: i64,
     /// `true` once the robot has made a turn.
     has_begun: bool,

@@ -63,7 +63,7 @@ pub(crate) fn only_of_settings<'s>(
     settings.modules().filter(move |module| !is_replaced(module.name))
 }
 
-/// The sound of a run, and the radius, in metres, of the head that hears the sound.
+/// The sound of a run, and the radius, in metres, of the head with the two ears.
 #[derive(Debug, Clone)]
 pub(crate) struct SoundInput {
     pub(crate) source: AudioSource,

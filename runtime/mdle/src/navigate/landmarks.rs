@@ -29,14 +29,14 @@ pub(super) struct Landmarks {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct Landmark {
     name: Spanned<String>,
-    /// Direction of the landmark's first axis on the floor.
+    /// Direction, on the floor, of the landmark's x axis.
     axis: Spanned<String>,
     /// Position on the floor of a robot that is at the landmark.
     place: Option<Spanned<String>>,
     /// File of the landmark's map, relative to the folder of this file; `None` if the landmark has no map.
     map: Option<PathBuf>,
-    /// Pose, in map coordinates, of a robot that is at the landmark and whose heading is along the landmark's first
-    /// axis; `None` for the default pose.
+    /// Pose, in map coordinates, of a robot that is at the landmark and whose heading is along the landmark's x axis;
+    /// `None` for the default pose.
     at: Option<Spanned<String>>,
 }
 
@@ -94,7 +94,7 @@ impl Landmarks {
     }
 
     /// Reads the maps of the landmarks. `file` is the file of landmarks; `begins` is the direction, in degrees, of the
-    /// first axis of the landmark at which the route begins.
+    /// x axis of the landmark at which the route begins.
     ///
     /// # Errors
     /// Fails if a map cannot be read.
@@ -111,7 +111,7 @@ impl Landmarks {
     }
 
     /// Returns the known positions of landmarks, in the coordinates of the route. `begins` is the direction, in
-    /// degrees, of the first axis of the landmark at which the route begins.
+    /// degrees, of the x axis of the landmark at which the route begins.
     pub(super) fn places(&self, begins: f64) -> Vec<LandmarkPlace> {
         let (sin, cos) = libm::sincos(Radians::from_degrees(begins).0);
         let places = self.landmark.iter().filter_map(|landmark| {
@@ -122,7 +122,7 @@ impl Landmarks {
         places.collect()
     }
 
-    /// Returns the direction of a landmark's first axis on the floor, in degrees; 0 if the file does not contain it.
+    /// Returns the direction, on the floor, of a landmark's x axis, in degrees; 0 if the file does not contain it.
     pub(super) fn axis(&self, name: &str) -> f64 {
         let landmark = self.landmark.iter().find(|landmark| landmark.name.get_ref() == name);
         landmark.and_then(|landmark| Quantity::Angle.read(landmark.axis.get_ref(), "deg").ok()).unwrap_or_default()

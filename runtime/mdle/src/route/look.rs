@@ -16,7 +16,7 @@ pub(super) const LOOK: &str = "LookAround";
 /// Maximum distance of the search from the expected pose along each axis, in steps of 10 cm, for a robot that has
 /// driven to the landmark.
 const WAYS: i16 = 6;
-/// Minimum margin by which the score of another landmark must exceed the score of the expected landmark. With a larger
+/// Maximum margin by which another landmark's score may exceed the score of the expected landmark. With a larger
 /// margin, the robot is not at the expected landmark.
 const MARGIN: f64 = 0.6;
 
@@ -24,11 +24,9 @@ const MARGIN: f64 = 0.6;
 pub(crate) struct LandmarkMap {
     /// Name of the landmark.
     pub(crate) name: String,
-    /// Angle, in degrees, from the first axis of the landmark where the route begins to the first axis of this
-    /// landmark.
+    /// Angle, in degrees, from the x axis of the landmark where the route begins to the x axis of this landmark.
     pub(crate) turned: f64,
-    /// Pose, in map coordinates, of a robot that is at the landmark and whose heading is along the landmark's first
-    /// axis.
+    /// Pose, in map coordinates, of a robot that is at the landmark and whose heading is along the landmark's x axis.
     pub(crate) at: Pose,
     pub(crate) map: SavedMap,
 }
@@ -63,7 +61,8 @@ impl LookPlan {
 pub(super) struct LookEchoes {
     /// Name of the landmark at which the robot should be.
     expected: String,
-    /// `true` if the robot has driven to the landmark; `false` if it was placed there, along the landmark's first axis.
+    /// `true` if the robot has driven to the landmark; `false` if it was placed there, with its heading along the
+    /// landmark's x axis.
     has_driven: bool,
     order: PingOrder,
     pings: Vec<GridPing>,

@@ -34,7 +34,7 @@ pub(crate) struct Leg {
     pub(crate) edge: Edge,
     /// Direction of the frame in degrees, relative to the heading at the start of the run.
     pub(crate) turned: f64,
-    /// File of the graph.
+    /// Path of the graph.
     pub(crate) graph: PathBuf,
     /// Name of the plan of the leg.
     pub(crate) name: String,

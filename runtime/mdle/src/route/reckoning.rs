@@ -26,7 +26,7 @@ impl<'p> Reckoning<'p> {
         Self { places, last: None }
     }
 
-    /// Records that the robot is at a landmark; `here` is its pose by odometry.
+    /// Records that the robot is at a landmark; `here` is the robot's pose by odometry.
     pub(super) fn is_at(&mut self, landmark: &str, here: Pose) {
         self.last = self.place(landmark).map(|place| (place.at, here));
     }

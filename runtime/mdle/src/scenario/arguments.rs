@@ -17,15 +17,15 @@ const MDLE: &str = "mdle run SCENARIO.toml";
 pub(super) struct ScenarioOptions {
     pub(super) seed: Option<u64>,
     pub(super) timeout: Option<Duration>,
-    /// File of the log. For records, the names of the robots' records are derived from this name.
+    /// Path of the log file. If the log is a record, the paths of the robots' records are derived from this path.
     pub(super) log: Option<PathBuf>,
     /// Command that repeats the run without writing its files.
     pub(super) command: String,
-    /// File of the table of poses.
+    /// Path of the file with the table of poses.
     pub(super) trail: Option<PathBuf>,
-    /// File of the picture.
+    /// Path of the picture.
     pub(super) plot: Option<PathBuf>,
-    /// File of a picture of the paths that were driven under `path` and `Follow`.
+    /// Path of a picture of the paths that were driven under `path` and `Follow`.
     pub(super) trips: Option<PathBuf>,
     /// Folder for the paths that robots record.
     pub(super) recorded_paths: Option<PathBuf>,

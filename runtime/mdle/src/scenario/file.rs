@@ -44,7 +44,7 @@ pub(super) struct ScenarioText {
 pub(super) struct CrowdText {
     /// Number of robots.
     pub(super) robots: At<u64>,
-    /// File of the plan that each robot runs, relative to the folder of the scenario.
+    /// Path of the plan that each robot runs, relative to the folder of the scenario.
     pub(super) file: At<PathBuf>,
     /// Name of the plan to run, for a file with several plans.
     pub(super) plan: Option<At<String>>,
@@ -70,7 +70,7 @@ pub(super) struct LinkText {
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct RobotText {
     pub(super) name: At<String>,
-    /// File of the plan, relative to the folder of the scenario.
+    /// Path of the plan's file, relative to the folder of the scenario.
     pub(super) file: At<PathBuf>,
     /// Name of the plan to run, for a file with several plans.
     pub(super) plan: Option<At<String>>,
@@ -103,7 +103,7 @@ pub(super) struct SentPlanText {
     pub(super) at: At<String>,
     pub(super) from: At<String>,
     pub(super) to: At<String>,
-    /// File of the plan, relative to the folder of the scenario.
+    /// Path of the plan's file, relative to the folder of the scenario.
     pub(super) file: At<PathBuf>,
     /// Moment at which the plan takes over, as written.
     pub(super) when: Option<At<String>>,

@@ -273,7 +273,7 @@ fn no_other_robot(other: &At<String>, own: &str, names: &[&str]) -> ScenarioErro
     ScenarioError::at(other.span(), message).help(format!("the other robots of the scenario are {}", others.join(", ")))
 }
 
-/// Returns the error about a robot that a plan names and that the scenario does not have.
+/// Returns the error about a robot that a plan names but that the scenario does not contain.
 fn unknown_peer(text: &RobotText, other: &str, names: &[&str]) -> ScenarioError {
     let name = text.name.get_ref();
     if other == name {

@@ -10,7 +10,7 @@ pub(crate) const MOST_SEEDS: u64 = 1_000_000;
 /// The arguments of `mdle test`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Test {
-    /// Test files, plans, or folders.
+    /// Paths of the test files, plans or folders to test.
     pub(crate) files: Vec<PathBuf>,
     /// Name of the only test to run.
     pub(crate) only: Option<String>,
@@ -22,9 +22,9 @@ pub(crate) struct Test {
     pub(crate) jobs: Option<u64>,
     /// `true` if the coverage is printed.
     pub(crate) coverage: bool,
-    /// Folder for pictures of the plans with counts.
+    /// Folder for pictures of the plans, which show how many times each atom began.
     pub(crate) pictures: Option<PathBuf>,
-    /// File for the results in JUnit's XML format.
+    /// Path of the file for the results in JUnit's XML format.
     pub(crate) junit: Option<PathBuf>,
     /// `true` if the results are printed as JSON.
     pub(crate) json: bool,
@@ -34,7 +34,7 @@ pub(crate) struct Test {
     pub(crate) watch: bool,
 }
 
-/// Returns the command line.
+/// Returns the definition of the command `mdle test` and its arguments.
 pub(crate) fn command() -> Command {
     let flag = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     let option = |name: &'static str, value: &'static str| Arg::new(name).long(name).value_name(value);
@@ -91,7 +91,7 @@ pub(crate) fn command() -> Command {
         )
 }
 
-/// Reads the arguments.
+/// Reads the arguments from the parsed command line.
 pub(crate) fn read(matches: &ArgMatches) -> Test {
     // A signed type, so that the message about a negative number contains the valid range.
     let count = |name: &str| matches.get_one::<i64>(name).map(|count| count.unsigned_abs());

@@ -25,7 +25,7 @@ pub(super) struct TestCourse {
 /// The beginning of an atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Began {
-    /// Number of the atom, as written, from 0.
+    /// Number of the atom, counted from 0 in the order of the plan's text.
     pub(super) atom: u32,
     pub(super) turn: u64,
     pub(super) t: Nanos,
@@ -38,7 +38,7 @@ pub(super) struct CourseTransition {
     pub(super) t: Nanos,
     /// Number of the atom that was left.
     pub(super) from: Option<u32>,
-    /// Number of the atom that was entered; `None` if the plan is over.
+    /// Number of the atom that was entered; `None` if the plan has ended.
     pub(super) to: Option<u32>,
     /// Number of the element that ended.
     pub(super) scope: u32,
@@ -52,7 +52,7 @@ pub(super) struct CourseTransition {
 /// The end of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum TestEnd {
-    /// The plan is over, by the last transition.
+    /// The plan is over; the last transition ended it.
     Over,
     /// The plan was not over at the end of the script, or at the limit of the run.
     Running,
@@ -97,7 +97,7 @@ impl<'m> CourseRecorder<'m> {
         Self { machine, course, atom: None }
     }
 
-    /// Takes a turn at time `t`, after which `atom` is the current one; `words` returns the cause of a transition.
+    /// Records the turn at time `t`, after which `atom` is current; `words` returns the cause of a transition.
     pub(super) fn turn(
         &mut self,
         t: Nanos,
@@ -130,7 +130,7 @@ impl<'m> CourseRecorder<'m> {
         self.atom = atom;
     }
 
-    /// Takes a turn at time `t` in which the plan has not begun.
+    /// Records a turn at time `t` in which the plan has not begun.
     pub(super) fn waits(&mut self, t: Nanos) {
         self.course.turns += 1;
         self.course.t = t;
@@ -151,7 +151,8 @@ impl TestCourse {
     }
 }
 
-/// Returns the law of an atom with its line, as in `go 20 0 (line 6)`; for `None`, the end of the plan.
+/// Returns the law of an atom with its line, as in `go 20 0 (line 6)`; if `atom` is `None`, returns "the end of the
+/// plan".
 pub(super) fn atom_words(machine: &Machine, words: &dyn Words, atom: Option<u32>) -> String {
     let Some(atom) = atom else { return "the end of the plan".to_owned() };
     let atom = machine.atom(atom);

@@ -16,8 +16,8 @@ pub(super) struct Coverage {
     pub(super) fired: Vec<u64>,
     /// For each element, the number of times that it ended by the completion of its law.
     pub(super) completed: Vec<u64>,
-    /// For each operand of each element's interrupt, the number of evaluations in which it was false, and the number of
-    /// those in which it was true.
+    /// For each operand of each element's interrupt, the number of evaluations in which it was false, and the number in
+    /// which it was true.
     pub(super) operands: Vec<Vec<[u64; 2]>>,
     /// For each element, `true` if each operand alone fires its interrupt. All operands are then false while the
     /// element runs.
@@ -53,8 +53,8 @@ impl Coverage {
         self.atom = None;
     }
 
-    /// Takes a turn, after which `atom` is current. For an element that encloses that atom, `evaluate` calls
-    /// its second argument with the number of each fired operand.
+    /// Counts a turn, after which `atom` is current. For an element that encloses that atom, `evaluate` calls its
+    /// second argument with the number of each fired operand.
     pub(super) fn turn(
         &mut self,
         machine: &Machine,

@@ -33,7 +33,8 @@ struct CoveredElement {
     depth: usize,
     /// Law of an atom, or name of a scope.
     name: String,
-    /// Numbers of times that the law began and that the atom was skipped; `None` for a scope.
+    /// Number of times that the law began, and, in `skipped`, number of times that the atom was skipped; `None` for a
+    /// scope.
     #[serde(skip_serializing_if = "Option::is_none")]
     began: Option<u64>,
     #[serde(skip_serializing_if = "Option::is_none")]

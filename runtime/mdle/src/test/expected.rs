@@ -46,7 +46,8 @@ pub(super) struct AtomsNamed {
 #[derive(Clone)]
 pub(super) struct ExpectedTransition {
     pub(super) from: Option<AtomsNamed>,
-    /// The atoms, one of which must be entered: `Some(None)` for the end of the plan, `None` for any atom or the end.
+    /// The atoms of which one must be entered. `Some(None)` means the end of the plan; `None` means any atom or the end
+    /// of the plan.
     pub(super) to: Option<Option<AtomsNamed>>,
     pub(super) by: Option<(String, NamedCause)>,
     pub(super) after: Option<Nanos>,

@@ -22,9 +22,9 @@ pub(super) type At<T> = Spanned<T>;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct TestFile {
-    /// File of the plan, relative to the folder of the test file; by default the plan beside that file.
+    /// Path of the plan's file, relative to the folder of the test file; by default, the plan beside the test file.
     pub(super) plan: Option<At<PathBuf>>,
-    /// Name of the plan, for a file with several.
+    /// Name of the plan, for a file with several plans.
     pub(super) name: Option<At<String>>,
     /// Name or folder of the target.
     pub(super) target: Option<At<String>>,
@@ -92,9 +92,9 @@ pub(super) struct FaultText {
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct ExpectText {
-    /// All atoms that begin, in order.
+    /// All atoms that must begin, in order; no other atom may begin.
     pub(super) atoms: Option<At<Vec<At<String>>>>,
-    /// Atoms that begin in this order, perhaps with others between them.
+    /// Atoms that must begin in this order; other atoms may begin between them.
     pub(super) order: Option<At<Vec<At<String>>>>,
     #[serde(default)]
     pub(super) transitions: Vec<At<TransitionText>>,
@@ -213,7 +213,8 @@ pub(super) fn read(text: &str) -> Result<TestFile, TestFileError> {
     Ok(file)
 }
 
-/// Returns the error for text that the TOML parser refuses; for an unknown key, with the most similar name.
+/// Returns the error for text that the TOML parser refuses. For an unknown key, the error proposes the most similar
+/// name.
 fn refused(error: &toml::de::Error) -> TestFileError {
     let place = error.span();
     let words = [("a sequence", "a list"), ("map", "a table"), ("u64", COUNT), ("u8", COUNT)];

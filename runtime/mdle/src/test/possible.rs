@@ -68,7 +68,7 @@ fn can_be_made(wanted: &ExpectedTransition, place: ByteRange, subject: &Subject)
     Err(TestFileError::at(place, format!("the plan cannot make {words}")).help(help))
 }
 
-/// Returns the laws of atoms; for `None`, the end of the plan.
+/// Returns a list of the laws of `atoms` as part of a sentence; a `None` among the atoms means the end of the plan.
 fn laws(subject: &Subject, atoms: &BTreeSet<Option<u32>>) -> String {
     let laws = listed(atoms.iter().flatten().map(|atom| subject.machine().atom(*atom).law().text.clone()));
     match (atoms.contains(&None), laws.is_empty()) {
@@ -79,7 +79,7 @@ fn laws(subject: &Subject, atoms: &BTreeSet<Option<u32>>) -> String {
     }
 }
 
-/// Returns texts in quotes, each once.
+/// Returns a list of texts in quotes; each text is listed once.
 fn listed(texts: impl Iterator<Item = String>) -> String {
     let mut known: Vec<String> = Vec::new();
     for text in texts.map(|text| format!("`{text}`")) {

@@ -26,7 +26,8 @@ struct RunEntry {
     test: String,
     seed: Option<u64>,
     passed: bool,
-    /// Number of turns, time of the last turn in seconds, and the end: `over`, `running`, `failed` or `crashed`.
+    /// Number of turns. `seconds` is the time of the last turn, and `end` describes the end of the run: `over`,
+    /// `running`, `failed` or `crashed`.
     turns: u64,
     seconds: f64,
     end: &'static str,

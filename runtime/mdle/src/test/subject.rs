@@ -23,7 +23,7 @@ const SIM: &str = "sim";
 
 /// A plan that is tested.
 pub(super) struct Subject {
-    /// File of the plan.
+    /// Path of the plan's file.
     pub(super) file: PathBuf,
     pub(super) compiled: Compiled,
     /// Operands and lines of the plan.
@@ -39,9 +39,9 @@ pub(super) struct Subject {
     processes: Vec<NamedByFile>,
 }
 
-/// A module of an `mdle.toml`.
+/// A module that an `mdle.toml` names.
 struct NamedByFile {
-    /// Place of its entry, for messages.
+    /// Place of the module's entry in the file, for messages.
     place: String,
     name: String,
     command: String,

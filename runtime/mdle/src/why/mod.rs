@@ -41,7 +41,7 @@ struct TurnAnswer {
 enum NextEvents {
     /// The next turn with transitions. Contains the causes of the transitions, and the atoms to which they led.
     Turn { turn: u64, t: Nanos, steps: Vec<(String, Option<AtomWords>)> },
-    /// There is no further transition in the record. Contains the time of the end of the record, and its reason.
+    /// There is no further transition in the record. Contains the time of the record's end, and the reason for the end.
     End { t: Nanos, why: String },
 }
 

@@ -59,7 +59,7 @@ pub(crate) struct Beginnings {
 pub(crate) struct Skips {
     pub(crate) times: u64,
     pub(crate) first: Stay,
-    /// The last of these turns.
+    /// Last turn in which the element was entered and left immediately.
     pub(crate) last: Turned,
 }
 
@@ -73,19 +73,20 @@ pub(crate) struct Stay {
     pub(crate) cause: String,
 }
 
-/// The turns in which the end of a scope would have led to an atom in question.
+/// The turns in which the end of a scope would have led to one of the atoms about which the question asks.
 #[derive(Debug)]
 pub(crate) struct Chance {
-    /// Name of the scope that would have begun; `None` unless it encloses the element of the question.
+    /// Name of the scope that would have begun; `None` unless this scope encloses the element about which the question
+    /// asks.
     pub(crate) begins: Option<String>,
     /// Number of periods of consecutive turns with such an opportunity. In a loop, there is one period for each pass.
     pub(crate) times: u64,
-    /// Indices, in the list of scopes, of the scopes whose end would have led to the atom. In the first turn, one of
-    /// them would have had to end.
+    /// Indices, in the list of scopes, of the scopes whose end would have led to the atom. In the first turn with such
+    /// an opportunity, one of these scopes would have had to end.
     pub(crate) scopes: Vec<usize>,
-    /// The first of these turns.
+    /// First turn with such an opportunity.
     pub(crate) first: Stay,
-    /// The last of these turns, and the scope that ended instead, if there was one.
+    /// Last turn with such an opportunity, and the scope that ended instead, if there was one.
     pub(crate) last: Stay,
 }
 

@@ -27,7 +27,7 @@ pub(crate) enum ScopeRole {
 pub(crate) struct ScopeState {
     /// Name of the scope; `None` for an atom and for a scope without a name.
     pub(crate) name: Option<String>,
-    /// `true` if the scope is the own scope of an atom.
+    /// `true` if the scope is an atom's own scope.
     pub(crate) is_atom: bool,
     /// File and line of the scope.
     pub(crate) line: String,

@@ -41,7 +41,7 @@ pub struct Atrv {
     incoming: Incoming,
     /// Reports that have not been sent yet.
     outgoing: Vec<Vec<u8>>,
-    /// Number of the last report, which counts the reports.
+    /// Number of the last report; the robot counts its reports.
     count: u8,
     /// Commanded forward speed and turn rate, in the controller's units per second. They come from the last motion
     /// command.
@@ -73,7 +73,7 @@ impl Atrv {
     /// passed to [`Incoming::new`].
     ///
     /// # Errors
-    /// Fails if the simulated world rejects the input, which does not occur here.
+    /// Fails if `body` rejects the null input, which it never does.
     pub fn new(mut body: Simulated, step: Duration, marks: bool) -> Result<Self, String> {
         let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
         Ok(Self {

@@ -49,8 +49,8 @@ pub struct Scout {
     age: Duration,
     /// `true` while the emergency stop is pressed.
     pub emergency: bool,
-    /// Faults of the body: the right wheel is stuck, the front sonar is dead, the first bumper is pressed, the battery
-    /// is low, the charger is plugged in, or the sonars do not ping.
+    /// `true` while the right wheel is stuck. The next fields are further faults of the body: the front sonar is dead,
+    /// the first bumper is pressed, the battery is low, the charger is plugged in, and the sonars do not ping.
     is_stuck: bool,
     is_deaf: bool,
     is_pressed: bool,
@@ -73,7 +73,7 @@ impl Scout {
     /// Creates a robot that has just been switched on.
     ///
     /// # Errors
-    /// Fails if the simulated world rejects the input, which does not occur here.
+    /// Fails if `body` rejects the null input, which it never does.
     pub fn new(mut body: Simulated) -> Result<Self, String> {
         let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
         let zero = sensed.pose();

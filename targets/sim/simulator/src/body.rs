@@ -144,7 +144,7 @@ impl Body {
         self.advance(&Twist::default(), self.drive.fastest / self.drive.acceleration + STEP, walls);
     }
 
-    /// Makes one step of the integration. The step has a length of `step` seconds.
+    /// Makes one step of the integration, which is `step` seconds long. Returns the obstacle that the body has hit.
     fn step(&mut self, step: f64, walls: &Walls) -> Obstacle {
         let Twist { v, omega } = self.velocity();
         let (way, turn) = (v.0 * step, omega.0 * step);

@@ -18,8 +18,8 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Begins the record of `robot` in `world`. `setup` is the text in titles about the world, the body and the seed.
-    /// The data of a moving picture are recorded only if `animated` is `true`.
+    /// Begins the record of `robot` in `world`. `setup` describes the world, the body and the seed in titles. The data
+    /// for an animation are recorded only if `animated` is `true`.
     #[must_use]
     pub fn of(robot: &Simulated, world: &World, setup: String, animated: bool) -> Self {
         let mut trail = Trail::from(&robot.footprint());
@@ -29,9 +29,9 @@ impl Drawing {
         Self { world: world.clone(), trail }
     }
 
-    /// Begins the record of a robot whose world is not known. `y` is the robot's first output; the driven path is
-    /// measured by odometry. `setup` is the text in titles about the run. The data of a moving picture are recorded
-    /// only if `animated` is `true`.
+    /// Begins the record of a robot whose world is unknown. `y` is the robot's first output; the driven path is
+    /// measured by odometry. `setup` describes the run in titles. The data for an animation are recorded only if
+    /// `animated` is `true`.
     #[must_use]
     pub fn without_world(y: &Sensed, setup: String, animated: bool) -> Self {
         let mut trail = Trail::from(&Footprint { pose: y.odometry, form: Form::of(&y.shape) });
@@ -61,7 +61,7 @@ impl Drawing {
         &self.trail.echoes
     }
 
-    /// Records an exchange of `robot` at time `t`, which had the output `sensed`. `touches` is `true` if a contact
+    /// Records the exchange of `robot` at time `t` that returned the output `sensed`. `touches` is `true` if a contact
     /// begins with this exchange.
     pub fn exchanged(&mut self, robot: &Simulated, sensed: &Sensed, t: Nanos, touches: bool) {
         self.trail.went(&robot.pose());

@@ -32,7 +32,7 @@ struct RobotWay {
 }
 
 impl FleetDrawing {
-    /// Begins the record of robots in `world`; `title` is a text about the run.
+    /// Begins the record of robots in `world`; `title` describes the run.
     #[must_use]
     pub fn of(world: &World, title: &str) -> Self {
         Self { world: world.clone(), title: title.to_owned(), robots: Vec::new(), contacts: Vec::new() }

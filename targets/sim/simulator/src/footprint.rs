@@ -72,7 +72,7 @@ impl Form {
         }
     }
 
-    /// Radius of the smallest circle around the body, in metres.
+    /// Returns the radius of the smallest circle around the body, in metres.
     #[must_use]
     pub fn radius(self) -> f64 {
         match self {

@@ -1,5 +1,5 @@
-//! Records the frames of a moving picture. Their number is limited, and they are evenly spread over the run, regardless
-//! of its duration.
+//! Records the frames of an animation. The number of frames is limited, and the frames are evenly spread over the run,
+//! regardless of its duration.
 
 use mdle_runtime::{Nanos, Pose, SONARS};
 
@@ -19,7 +19,7 @@ pub(crate) struct FilmFrame {
     pub(crate) things: Vec<Option<Point>>,
 }
 
-/// Frames of a run. A longer run has a smaller fraction of its frames stored.
+/// Frames of a run. The longer a run is, the smaller is the fraction of its frames that is stored.
 #[derive(Debug, Clone)]
 pub(crate) struct Frames {
     kept: Vec<FilmFrame>,

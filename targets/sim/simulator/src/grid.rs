@@ -190,7 +190,8 @@ impl Grid {
         (best.segment != usize::MAX).then_some(best)
     }
 
-    /// Returns the distances along a ray at which it enters and leaves the grid; `None` if it does not cross the grid.
+    /// Returns the distances along a ray at which the ray enters and leaves the grid; `None` if the ray does not cross
+    /// the grid.
     fn crossed(&self, from: Point, way: Point, most: f64) -> Option<(f64, f64)> {
         let beyond = BEYOND * self.cell;
         let slab = |from: f64, way: f64, cells: usize| {

@@ -113,7 +113,7 @@ pub(crate) struct Slip {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hearing {
     pub(crate) transducers: Vec<Transducer>,
-    /// Distance of the transducers from the centre that laws assume, in metres.
+    /// Distance from the centre at which laws assume the transducers to be, in metres.
     pub(crate) ring_radius: f64,
     /// Distance between two points on a wall beside the robot, in metres: the points that reflect the pings of the two
     /// neighbours of the sonar that faces the wall. `None` if ranges are too coarse to measure a heading.

@@ -8,10 +8,10 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 /// Number of random numbers that are drawn at a time: one block of ChaCha.
 const NUMBERS: usize = 8;
 
-/// A stream of random numbers, determined by the seed and the purpose: that of ChaCha with 8 rounds.
+/// A stream of random numbers, determined by the seed and the purpose: the stream of ChaCha with 8 rounds.
 ///
-/// A generator of `rand_chacha` holds four blocks and its key, 320 bytes, and a robot needs four of them. In a crowd
-/// they would take as much memory as the sonars' pings.
+/// A generator of `rand_chacha` holds four blocks and its key, which take 320 bytes, and a robot needs four generators.
+/// In a crowd, these generators would take as much memory as the pings of the sonars.
 #[derive(Debug, Clone)]
 pub(crate) struct Noise {
     seed: u64,
@@ -52,7 +52,7 @@ impl Noise {
         self.numbers[place]
     }
 
-    /// Draws the numbers that follow those that have been used.
+    /// Draws the next numbers of the stream.
     fn draw(&mut self) {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         random.set_stream(self.purpose as u64);

@@ -21,8 +21,8 @@ impl Outline {
         self.points.iter().zip(self.points.iter().skip(1)).map(move |(from, to)| (self, *from, *to))
     }
 
-    /// Returns `true` if `place` is inside the outline. This is the case if a line from it crosses an odd number of
-    /// sides.
+    /// Returns `true` if `place` is inside the outline. This is the case if a line from `place` crosses an odd number
+    /// of sides.
     pub(crate) fn surrounds(&self, place: Point) -> bool {
         let crossed = self.segments().filter(|(_, from, to)| {
             let between = (from.y > place.y) != (to.y > place.y);

@@ -1,5 +1,5 @@
 //! Pictures of a run. For `--plot`, they show the floor with the driven path and the positions where atoms began; for
-//! `--record`, a moving picture.
+//! `--record`, they are animated.
 
 mod chart;
 mod colours;

@@ -7,9 +7,9 @@ use mdle_runtime::{Meters, Pose};
 /// A position on the floor, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
-    /// Coordinate along the first axis, in metres.
+    /// Coordinate along the x axis, in metres.
     pub x: f64,
-    /// Coordinate along the second axis, to the left of the first, in metres.
+    /// Coordinate along the y axis, which points to the left of the x axis, in metres.
     pub y: f64,
 }
 

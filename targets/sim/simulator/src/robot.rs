@@ -118,8 +118,7 @@ impl Simulated {
         })
     }
 
-    /// Creates another robot with the same body, the same world and the current battery of this one, at rest at
-    /// `start`.
+    /// Creates another robot, at rest at `start`, with the body, the world and the current battery of this robot.
     ///
     /// # Errors
     /// Fails if the robot cannot start at `start` in `world`, which must be the world of this robot.
@@ -146,7 +145,7 @@ impl Simulated {
         offsets.fold(self.ring.hearing.ring_radius, f64::max) + self.ring.hearing.most + radius
     }
 
-    /// Returns the maximum distance, in metres, between the centres of two such robots that may touch in the next
+    /// Returns the maximum distance, in metres, between the centres of two similar robots that may touch in the next
     /// exchange.
     #[must_use]
     pub fn touches(&self) -> f64 {
@@ -212,7 +211,8 @@ impl Simulated {
     }
 
     /// Returns the last ping of each transducer, in the order of the body's model. These are the data of a robot's
-    /// sonar boards, before a driver combines them into sixteen sonars; a body with only sixteen transducers has none.
+    /// sonar boards, before a driver combines them into sixteen sonars; a body with only sixteen transducers has no
+    /// such data.
     #[must_use]
     pub fn heard(&self) -> &[Heard] {
         &self.ring.heard

@@ -2,7 +2,7 @@
 //!
 //! Pixels darker than the threshold are occupied. Walls are where occupied pixels border on other pixels. The pixel
 //! steps of a slanted wall are smoothed, because a sonar would otherwise receive no echo of the wall. Unknown pixels
-//! are floor. The robot starts at the origin of the map's frame, where the robot began that made the map.
+//! are floor. The robot starts at the origin of the map's frame, at which the robot that made the map began.
 
 mod contours;
 mod header;

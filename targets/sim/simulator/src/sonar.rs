@@ -160,8 +160,8 @@ impl Ring {
         (last == Some(number)).then_some(own)
     }
 
-    /// Returns the nearest of the last echoes of a sonar's transducers, as the range from the transducer and its
-    /// number; `None` without an echo.
+    /// Returns the nearest of the last echoes of a sonar's transducers, as the range from the transducer and the number
+    /// of the transducer; `None` without an echo.
     fn nearest(&self, sonar: usize) -> Option<(f64, usize)> {
         let of_sonar = |number: &usize| self.hearing.transducers[*number].sonar.number() == sonar;
         let heard = (0..self.heard.len()).filter(of_sonar);
@@ -188,7 +188,7 @@ impl Ring {
 
 impl SonarErrors {
     /// Returns the measured range for the exact range `exact`; `None` if there is no echo. Every ping uses the same
-    /// number of random numbers, whatever its result is.
+    /// number of random numbers, regardless of its result.
     fn of(&mut self, exact: Option<f64>, hearing: &Hearing) -> Option<f64> {
         let missed = self.ranges.uniform() < hearing.misses;
         let error = hearing.spread * self.ranges.normal();

@@ -41,7 +41,7 @@ pub(crate) struct Trail {
     sensed: Option<Nanos>,
     /// Time at which the turns ended; `None` before that.
     ended: Option<Nanos>,
-    /// Frames of the moving picture; `None` if no moving picture is recorded.
+    /// Frames of the animation; `None` if no animation is recorded.
     pub(crate) frames: Option<Frames>,
     /// The other robots of a fleet; empty if there is only one robot.
     pub(crate) companions: Vec<Companion>,

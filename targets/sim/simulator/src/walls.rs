@@ -44,9 +44,9 @@ struct Standing {
 /// The other robots near a robot.
 #[derive(Debug, Clone, Default)]
 pub struct Others {
-    /// Robots from which its sonars may receive an echo.
+    /// Robots from which the robot's sonars may receive an echo.
     pub heard: Vec<Footprint>,
-    /// Robots that its body may touch.
+    /// Robots that the robot's body may touch.
     pub touched: Vec<Footprint>,
 }
 

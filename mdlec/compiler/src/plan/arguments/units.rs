@@ -6,8 +6,8 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::nearest_unit;
 use crate::syntax::tree::{Arg, Call, Number};
 
-/// Reports the units of `call` that are separated from their numbers, and the errors that remain when they are joined;
-/// `None` if no unit is separated.
+/// Reports the units in `call` that are separated from their numbers, and the errors that remain after each unit is
+/// joined to its number; `None` if no unit is separated.
 pub(super) fn apart(
     call: &Call,
     fitted: impl Fn(&Call) -> Result<Arguments, Vec<Diagnostic>>,

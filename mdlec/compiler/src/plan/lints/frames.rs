@@ -45,7 +45,7 @@ impl<'p> FrameLint<'p, '_> {
     }
 }
 
-/// Returns `true` if a law may use a direction that is relative to its frame.
+/// Returns `true` if `law` may use a direction that is relative to the frame of its atom.
 fn names_a_direction(law: &Quark) -> bool {
     let kinds = law.args.iter().filter_map(|argument| match argument {
         Value::Quantity { kind, .. } | Value::Name(kind, _) => Some(*kind),

@@ -136,7 +136,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Checks an argument. A length in an argument is a distance to drive, so its limit is lower than the limit of a
+    /// Checks an argument. In an argument, a length is a distance to drive, so its limit is lower than the limit of a
     /// position.
     fn argument(&mut self, number: &Number, kind: ParameterKind, unit: &str, what: &str) {
         let size = number.digits().parse::<f64>().map_or(0.0, f64::abs);

@@ -141,7 +141,8 @@ impl Skipped<'_, '_> {
     }
 }
 
-/// Situation of a scope that has just been entered. The function returns the value of each quark.
+/// State of a scope that has just been entered, for evaluating conditions. Contains a function that returns the value
+/// of each quark.
 struct AtOnce<F>(F);
 
 impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {

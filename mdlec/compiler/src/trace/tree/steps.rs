@@ -110,7 +110,8 @@ impl<'t, 'p> OpenPart<'t, 'p> {
         &self.open.memories
     }
 
-    /// Returns, for a plan that uses `after`, a list that contains `true` for each fact in its record that is true.
+    /// Returns, for a plan that uses `after`, a list that contains `true` for each fact in the plan's record that is
+    /// true.
     #[must_use]
     pub fn facts(self) -> &'t [bool] {
         &self.open.facts

@@ -139,7 +139,7 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
 }
 
 impl<A: EngineAlphabet> Engine<A> {
-    /// Collects the result of the plan's turn. If a plan on trial panicked, rolls it back.
+    /// Collects the result of the plan's turn. If a plan on trial panicked, rolls the plan back.
     fn land(&mut self, t: Nanos, is_new: bool, transitions: &mut Transitions) -> Result<Turn<A::Input>, PilotFault> {
         if self.repeats.as_ref().is_some_and(|repeats| !repeats.lands()) {
             return Ok(Turn::Cut);

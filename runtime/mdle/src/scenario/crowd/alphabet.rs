@@ -1,4 +1,4 @@
-//! The alphabet of the simulated robot for a crowd: each running law takes only the memory that it needs itself.
+//! The alphabet of the simulated robot for a crowd: each running law takes only as much memory as it needs.
 //!
 //! On a robot, the law that runs is stored in place, so that no memory is allocated in a turn. This place is as large
 //! as the largest law of the alphabet, which would be most of the memory of a crowd whose robots run smaller laws.

@@ -13,7 +13,7 @@ use super::recorded::RecordedMember;
 pub(super) struct Member {
     /// The simulated robot. It is on the heap, so that moving the members of a large crowd between lists is cheap.
     robot: Box<Simulated>,
-    /// The running plan; `None` before it begins.
+    /// The running plan; `None` before the plan begins.
     machine: Option<Box<Machine<LoadedPlan<CrowdAlphabet>>>>,
     input: Twist,
     /// `true` once the plan is over.
@@ -43,8 +43,8 @@ impl Member {
         Self { record: record.map(Box::new), ..self }
     }
 
-    /// Returns two distances between the centres of two such robots, in metres: the distance within which one may
-    /// detect the other with its sonars, and the distance within which they may touch in a turn.
+    /// Returns two distances between the centres of this robot and a similar one, in metres: the distance within which
+    /// one may detect the other with its sonars, and the distance within which they may touch in a turn.
     pub(super) fn reaches(&self) -> (f64, f64) {
         (self.robot.hears(), self.robot.touches())
     }

@@ -1,4 +1,4 @@
-//! The poses at which the robots of a crowd begin. Each is a point of a lattice with a random heading.
+//! The poses at which the robots of a crowd begin. Each pose is a lattice point with a random heading.
 
 use mdle_runtime::{Meters, Pose, Radians};
 use mdle_sim::{Point, World};

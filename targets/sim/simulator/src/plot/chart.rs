@@ -16,7 +16,7 @@ const WIDTH: f64 = 960.0;
 const NAMES: f64 = 190.0;
 /// Maximum number of characters of a displayed name.
 const LETTERS_MOST: usize = 24;
-/// Height of a row of atoms, in pixels.
+/// Height of the row of an atom, in pixels.
 const ROW: f64 = 22.0;
 /// Height of a signal's curve, and vertical distance between two curves, in pixels.
 const CURVE: (f64, f64) = (84.0, 22.0);
@@ -30,11 +30,11 @@ const ROWS_MOST: usize = 24;
 pub struct TimeChart {
     /// Title of the chart.
     pub title: String,
-    /// Texts of the laws of the atoms; each atom has a row.
+    /// Text of each atom's law. The chart has one row per atom.
     pub atoms: Vec<String>,
     /// Periods in which atoms ran. Each contains the index of the atom, the beginning and the end.
     pub stays: Vec<(usize, Nanos, Nanos)>,
-    /// Signals; each has a curve.
+    /// Signals of the run. The chart has one curve per signal.
     pub signals: Vec<SignalCurve>,
     /// End of the run.
     pub end: Nanos,

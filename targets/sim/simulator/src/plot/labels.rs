@@ -17,8 +17,8 @@ const APART: f64 = 3.0;
 pub(super) type LabelBox = ((f64, f64), (f64, f64));
 
 /// Returns the positions of the labels of `dots`, in order. A label is inside the given rectangle, and overlaps no dot
-/// and no earlier label. If possible, it also overlaps none of `lines`; these are given as points, whose distance is at
-/// most the width of a label.
+/// and no earlier label. If possible, it also overlaps none of `lines`; these are given as points that are at most the
+/// width of a label apart.
 pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bottom)): LabelBox) -> Vec<Pixel> {
     let mut labels: Vec<Pixel> = Vec::with_capacity(dots.len());
     for dot in dots {

@@ -1,4 +1,4 @@
-//! Draws the moving picture of a run. The path grows as the robot drives along it, and a text names the running atom.
+//! Draws the animation of a run. The path grows as the robot drives along it, and a text names the running atom.
 //!
 //! All animations repeat together, after a pause. A viewer without animations shows the end of the run. A viewer that
 //! runs scripts also shows the time, a pause button, and a strip for seeking.
@@ -23,7 +23,7 @@ use crate::world::World;
 /// Script that shows the time, pauses and seeks. It contains no characters that would have to be escaped in XML.
 const SCRIPT: &str = include_str!("film.js");
 
-/// Draws the moving picture of `trail` on the floor of `world`.
+/// Draws the animation of `trail` on the floor of `world`.
 pub(crate) fn animated(world: &World, trail: &Trail) -> String {
     let layout = Layout::of(world, trail);
     let frames = trail.frames.as_ref().map(Frames::all).unwrap_or_default();

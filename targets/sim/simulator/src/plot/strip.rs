@@ -1,4 +1,4 @@
-//! Draws the strip below a moving picture: the running atom, and the timeline in the colours of the atoms.
+//! Draws the strip below an animation: the running atom, and the timeline in the colours of the atoms.
 
 use mdle_runtime::Nanos;
 use svg::node::element::{Group, Path, Rectangle, TSpan, Text};

@@ -55,7 +55,7 @@ fn figures(way: &[Point]) -> (f64, f64) {
 }
 
 impl TripDrawing {
-    /// Begins the record; `title` is a text about the run.
+    /// Begins the record; `title` describes the run.
     #[must_use]
     pub fn of(title: &str) -> Self {
         Self { title: title.to_owned(), robots: Vec::new() }

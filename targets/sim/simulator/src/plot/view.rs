@@ -7,8 +7,7 @@ use crate::world::World;
 const AROUND: f64 = 0.4;
 /// Margin around the driven path, in metres. It is smaller where the world ends.
 const ROOM: f64 = 2.0;
-/// Minimum fraction of the world's area from which the whole world is shown: a view that covers this fraction is
-/// replaced by the whole world.
+/// Minimum fraction of the world's area that a view must cover so that the whole world is shown instead of the view.
 const MOST: f64 = 0.5;
 
 /// A rectangle of the floor, in metres.

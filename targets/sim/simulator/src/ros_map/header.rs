@@ -12,9 +12,9 @@ pub struct Header {
     pub image: String,
     /// Size of a pixel, in metres.
     pub(crate) resolution: f64,
-    /// First coordinate of the image's lower left corner, in metres.
+    /// x coordinate of the image's lower left corner, in metres.
     pub(crate) x: f64,
-    /// Second coordinate of the image's lower left corner, in metres.
+    /// y coordinate of the image's lower left corner, in metres.
     pub(crate) y: f64,
     /// Rotation of the image, in radians.
     pub(crate) yaw: f64,

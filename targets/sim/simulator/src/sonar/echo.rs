@@ -19,7 +19,7 @@ use crate::walls::{Reached, Walls};
 
 /// Number of rays of a cone, which are evenly spread.
 const RAYS: u8 = 7;
-/// Maximum distance between an edge and the point that a ray hits at which the edge scatters the ray, in metres.
+/// Maximum distance, in metres, from an edge within which a ray must hit so that the edge scatters it.
 const SCATTERS: f64 = 0.08;
 /// Loss at an edge. With it, an edge is detected up to 0.6 of the angle of the lobe: up to 12.5° for a lobe of 21°.
 const EDGE_COSTS: f64 = 0.65;

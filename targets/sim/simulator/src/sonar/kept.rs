@@ -1,5 +1,5 @@
-//! The last pings of the sonars of a robot, in less memory than an output needs for them: the memory of a large crowd
-//! is mostly that of its pings.
+//! Stores the last pings of a robot's sonars in less memory than an output needs, because pings take most of the memory
+//! of a large crowd.
 
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pings, Pose, SONARS};
 
@@ -9,7 +9,7 @@ use crate::model::Hearing;
 #[derive(Debug, Clone)]
 pub(super) struct KeptPings {
     pings: [[KeptPing; PINGS_KEPT]; SONARS],
-    /// Numbers of the transducers that heard the echoes; [`NONE`] without an echo.
+    /// Numbers of the transducers that received the echoes; [`NONE`] without an echo.
     transducers: [[u8; PINGS_KEPT]; SONARS],
     /// Number of pings of each sonar that are kept.
     counts: [u8; SONARS],
@@ -24,7 +24,7 @@ struct KeptPing {
     pose: Pose,
 }
 
-/// Number that stands for no transducer.
+/// Number that means that no transducer received an echo.
 const NONE: u8 = u8::MAX;
 
 impl KeptPings {
@@ -34,8 +34,8 @@ impl KeptPings {
         counts: [0; SONARS],
     };
 
-    /// Adds a ping of a sonar, taken at `at` with the pose `pose` by odometry, and removes the oldest. `echo` is the
-    /// range of its echo and the number of the transducer that heard it.
+    /// Adds a ping of a sonar, taken at `at` with the pose `pose` by odometry, and removes the oldest. `echo` contains
+    /// the range of the ping's echo, and the number of the transducer that received the echo.
     pub(super) fn push(&mut self, sonar: usize, echo: Option<(f64, usize)>, at: Nanos, pose: Pose) {
         let Self { pings, transducers, counts } = self;
         let (range, transducer) = echo.map_or((0.0, NONE), |(range, number)| (range, number as u8));
