@@ -152,12 +152,12 @@ pub(super) enum Command {
     /// Opens a pseudo-terminal, speaks the protocol of the robot on it, and moves a simulated body in a world. `mdlec`
     /// becomes the emulator, which runs until a signal comes.
     Emulator(EmulatorArguments),
-    /// Serve an editor as its language server
+    /// Check and complete plans in an editor (Language Server Protocol)
     ///
     /// Speaks the Language Server Protocol on standard input and output; the editor starts and ends the process. The
     /// page "Editors" of the book has the lines for VS Code, Neovim, Helix, Zed and Emacs.
     Lsp,
-    /// Serve an editor as its debugger
+    /// Debug plans in an editor (Debug Adapter Protocol)
     ///
     /// Speaks the Debug Adapter Protocol on standard input and output; the editor starts and ends the process. Runs a
     /// plan with a script of interrupts, as `mdlec trace` does, forwards and backwards.
