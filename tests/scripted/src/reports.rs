@@ -142,11 +142,11 @@ pub(crate) fn duration(time: Nanos) -> f64 {
 /// with a tolerance, because they were converted to SI units and back.
 pub(crate) fn number(texts: &[&str], name: &str, arguments: &[Argument]) -> Option<usize> {
     texts.iter().position(|text| {
-        let mut words = text.split(' ').filter(|word| *word != "module");
-        // The name is compared first, because parsing numbers is slow.
-        if words.next() != Some(name) {
+        // The name is compared first, because splitting the text and parsing numbers is slow.
+        let Some(rest) = text.strip_prefix(name).filter(|rest| rest.is_empty() || rest.starts_with(' ')) else {
             return false;
-        }
+        };
+        let mut words = rest.split(' ').skip(1).filter(|word| *word != "module");
         let mut given = arguments.iter();
         let same = words.all(|word| match given.next() {
             Some(Argument::Number(number)) => {

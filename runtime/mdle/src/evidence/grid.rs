@@ -51,12 +51,17 @@ impl EvidenceGrid {
     /// Adds the evidence of a ping.
     pub(crate) fn take(&mut self, ping: &GridPing) {
         let reach = ping.range.map_or(SILENT, |range| range.min(FARTHEST) + DEPTH);
-        let (columns, rows) = (near(ping.x, reach), near(ping.y, reach));
         let direction = libm::sincos(ping.theta);
+        let (sin, cos) = direction;
+        let aside = WIDER * reach;
+        // The wider cone is a triangle: its tip is the transducer, and these are the other two corners.
+        let columns = between(ping.x, reach * cos - aside * sin, reach * cos + aside * sin);
+        let rows = between(ping.y, reach * sin - aside * cos, reach * sin + aside * cos);
         for row in rows {
             let cells = self.odds.iter_mut().enumerate().skip(row * CELLS + columns.start).take(columns.len());
+            let y = middle(row) - ping.y;
             for (number, odds) in cells {
-                let (x, y) = (middle(number % CELLS) - ping.x, middle(row) - ping.y);
+                let x = middle(number % CELLS) - ping.x;
                 *odds = (*odds + evidence(x, y, direction, ping)).clamp(-MOST, MOST);
             }
         }
@@ -88,9 +93,9 @@ impl EvidenceGrid {
 /// Returns the index of the cell at a position; `None` outside the grid. Cells are numbered row by row in the order of
 /// the y coordinates.
 pub(super) fn cell_at(x: f64, y: f64) -> Option<usize> {
-    let [column, row] = [x, y].map(|at| libm::floor((at + HALF) / CELL));
-    let inside = 0.0..CELLS as f64;
-    (inside.contains(&column) && inside.contains(&row)).then_some(row as usize * CELLS + column as usize)
+    let (column, row) = (libm::floor((x + HALF) / CELL), libm::floor((y + HALF) / CELL));
+    let (inside, end) = (column >= 0.0 && row >= 0.0, CELLS as f64);
+    (inside && column < end && row < end).then_some(row as usize * CELLS + column as usize)
 }
 
 /// Returns the coordinate of a cell's centre along an axis, in metres.
@@ -98,11 +103,12 @@ pub(super) fn middle(cell: usize) -> f64 {
     (cell as f64 + 0.5) * CELL - HALF
 }
 
-/// Returns the indices, along an axis, of the cells whose centres may be within `reach` of a position.
-fn near(position: f64, reach: f64) -> std::ops::Range<usize> {
-    // The conversion to an integer saturates.
+/// Returns the indices, along an axis, of the cells whose centres may be within a triangle. A corner is at `position`,
+/// and the others are `one` and `other` away from it.
+fn between(position: f64, one: f64, other: f64) -> std::ops::Range<usize> {
+    // The conversion to an integer saturates. A cell more at each end makes up for rounding errors.
     let cell = |at: f64| (libm::floor((at + HALF) / CELL).max(0.0) as usize).min(CELLS);
-    cell(position - reach)..cell(position + reach + CELL)
+    cell(position + one.min(other).min(0.0) - CELL)..cell(position + one.max(other).max(0.0) + 2.0 * CELL)
 }
 
 /// Returns the change in a cell's log-odds that a ping causes. `x` and `y` are the cell's coordinates relative to the
@@ -161,6 +167,24 @@ mod tests {
                 let changed = evidence(0.4 * cos, 0.4 * sin, libm::sincos(direction), &ping) < 0.0;
                 // The edges of the cone are not checked, because rounding moves them.
                 assert!(tenth.abs() == 125 || changed == (tenth.abs() < 125), "{direction} {tenth}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_cell_of_the_cone_is_left_out() {
+        for number in 0..72_i32 {
+            let theta = f64::from(5 * number + number % 5).to_radians();
+            let (x, y) = (f64::from(number % 7) * 0.3 - 1.0, f64::from(number % 11) * 0.2 - 1.0);
+            let range = (number % 3 > 0).then_some(0.2 + f64::from(number % 13) * 0.25);
+            let ping = GridPing { x, y, theta, range };
+            let mut grid = EvidenceGrid::new();
+            grid.take(&ping);
+            for (cell, odds) in grid.odds.iter().enumerate() {
+                let (x, y) = (middle(cell % CELLS) - ping.x, middle(cell / CELLS) - ping.y);
+                // Adding zero drops the sign of a zero, as in the grid.
+                let expected = 0.0 + evidence(x, y, libm::sincos(theta), &ping);
+                assert_eq!(odds.to_bits(), expected.to_bits(), "{ping:?} {cell}");
             }
         }
     }
