@@ -1,6 +1,6 @@
 //! A detour of `goAvoid`: a way round an obstacle that leads far off the goal's direction. The robot keeps to one side
-//! of the obstacle until the detour has helped, or until it circles in one place; otherwise it would turn back and forth
-//! in front of the obstacle.
+//! of the obstacle until the detour has helped, or until it circles in one place; otherwise it would turn back and
+//! forth in front of the obstacle.
 
 use core::f64::consts::TAU;
 
@@ -38,8 +38,8 @@ pub(super) struct Detour {
 }
 
 impl Detour {
-    /// Begins a detour of a robot at `here` on this side of an obstacle; `turned` is the angle that the robot has turned
-    /// since the law began.
+    /// Begins a detour of a robot at `here` on this side of an obstacle; `turned` is the angle that the robot has
+    /// turned since the law began.
     pub(super) fn begin(side: Side, goal: &Pose, here: Pose, turned: Radians, t: Nanos) -> Self {
         Self { side, from: here.distance(goal), since: t, circle: (here, turned) }
     }
