@@ -14,6 +14,9 @@ use crate::stuck::Progress;
 use crate::tangent::{Obstacles, Side, Wish};
 use crate::way::Ahead;
 use crate::winding::Winding;
+use detour::Detour;
+
+mod detour;
 
 /// Distance between the robot and the goal below which the goal is reached.
 const ARRIVED: Meters = Meters(0.12);
@@ -28,20 +31,9 @@ const FASTEST: f64 = 0.9;
 const ON_THE_SPOT: Radians = Radians::from_degrees(50.0);
 /// Angle between the chosen direction and the goal's direction above which a detour begins.
 const DETOUR: Radians = Radians::from_degrees(60.0);
-/// Time after which a detour follows its obstacle and no longer aims at the goal, whose direction would lead back to
-/// the place where the detour began.
-const ALONG_AFTER: Nanos = Nanos(8_000_000_000);
 /// Angle between the robot's heading and the direction at which the robot aims while a detour follows its obstacle.
 /// This direction is on the side of the obstacle.
 const ALONG: Radians = Radians::from_degrees(40.0);
-/// Distance by which the robot must have come nearer to the goal before a detour ends; `DETOUR_LEAST` must have passed
-/// as well.
-const GAINED: Meters = Meters(0.1);
-/// Minimum duration of a detour.
-const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
-/// Minimum duration of a detour whose goal has been replaced by another one. The distance of such a goal may be
-/// unknown, so it cannot be measured how much nearer the robot has come.
-const DETOUR_RENEWED: Nanos = Nanos(4_000_000_000);
 /// Angle from the goal's direction at which the robot gives way to an approaching person.
 const ASIDE: Radians = Radians::from_degrees(60.0);
 /// Durations of two phases that alternate while the robot makes no progress. For the duration `SQUEEZES`, it follows
@@ -116,16 +108,6 @@ pub struct GoingRound {
     narrow: Narrow,
 }
 
-/// A way round an obstacle that leads far off the goal's direction. The robot keeps to one side of the obstacle until
-/// the detour has helped; otherwise it would turn back and forth in front of the obstacle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Detour {
-    side: Side,
-    /// Distance from the goal when the detour began.
-    from: Meters,
-    since: Nanos,
-}
-
 impl GoingRound {
     /// Returns this law with the goal of `other`, a law that has just been created at `here`.
     pub(crate) fn with_goal_of(self, other: &Self, here: Pose) -> Self {
@@ -176,7 +158,7 @@ impl GoingRound {
 
     /// Returns `true` if the detour has lasted so long that it now follows its obstacle.
     fn goes_along(&self, t: Nanos) -> bool {
-        self.detour.is_some_and(|detour| t.since(detour.since) > ALONG_AFTER)
+        self.detour.is_some_and(|detour| detour.goes_along(t))
     }
 
     /// Returns the direction in which the robot drives to give way to this side. When the robot has reached the wall on
@@ -197,15 +179,12 @@ impl GoingRound {
         let Meters(distance) = here.distance(&self.goal);
         let goal = self.direction(here);
         let look_ahead = Meters(self.look_ahead.0.min(distance).max(ARRIVED.0));
-        let over = |detour: Detour| {
-            let has_helped = if self.is_renewed {
-                t.since(detour.since) > DETOUR_RENEWED
-            } else {
-                distance < detour.from.0 - GAINED.0 && t.since(detour.since) > DETOUR_LEAST
-            };
-            has_helped && obstacles.free(goal) >= look_ahead
-        };
-        self.detour = self.detour.filter(|detour| !over(*detour));
+        let is_free = obstacles.free(goal) >= look_ahead;
+        let (turned, is_on_map, is_renewed) = (self.winding.turned(), self.narrow.follows(), self.is_renewed);
+        self.detour = self.detour.and_then(|mut detour| {
+            let is_over = is_free && detour.has_helped(Meters(distance), t, is_renewed);
+            (!detour.circles(here, turned, is_on_map) && !is_over).then_some(detour)
+        });
         if let Some(side) = self.passers.gives_way() {
             return self.aside(side, goal, obstacles, look_ahead);
         }
@@ -222,7 +201,7 @@ impl GoingRound {
         let offset = obstacles.best(&wish);
         if self.detour.is_none() && offset.0.abs() > DETOUR.0 {
             let side = if offset.0 > 0.0 { Side::Left } else { Side::Right };
-            self.detour = Some(Detour { side, from: Meters(distance), since: t });
+            self.detour = Some(Detour::begin(side, &self.goal, here, turned, t));
         }
         let chosen = Radians(towards.0 + offset.0).wrapped();
         self.previous = Some(chosen);
@@ -283,7 +262,7 @@ impl GoingRound {
         }
         let distance = here.distance(&self.goal);
         let asked = Meters(self.look_ahead.0.min(distance.0));
-        let from = self.detour.map_or(distance, |detour| Meters(detour.from.0.min(distance.0)));
+        let from = self.detour.map_or(distance, |detour| Meters(detour.from().0.min(distance.0)));
         let free = chosen.to_goal.map(|free| (free, asked));
         let chosen = chosen.direction;
         let near = self.near(here, t);

@@ -31,6 +31,11 @@ impl Winding {
         self.turned += Radians(here.theta.0 - before.theta.0).wrapped().0;
     }
 
+    /// Returns the angle turned since the law began, counter-clockwise positive.
+    pub(crate) fn turned(self) -> Radians {
+        Radians(self.turned)
+    }
+
     /// Returns the angle by which the robot has to turn to a direction at the angle `off`, from -π to π. It is the
     /// angle of the longer turn if `off` is large and the robot has already turned far in the direction of `off`.
     pub(crate) fn turn_to(self, Radians(off): Radians) -> Radians {

@@ -321,9 +321,14 @@ fn the_careful_square_turns_early_at_a_wall() {
 #[test]
 fn seven_metres_ahead_are_reached_round_obstacles() {
     let ahead = built("seven", &of_book("simulator.md", "ahead.mdle"));
-    let worlds = [("floor.toml", "0,0,0", "ideal"), ("room", "0.7,0.7,45", "ideal"), ("hall", "1.5,5,20", "scout")];
-    for (world, start, body) in worlds.into_iter().chain([("maze", "4.2,0.6,120", "scout")]) {
-        let run = run(&ahead, &["--world", world, "--start", start, "--body", body, "--seed", "1"]);
+    let worlds = [
+        ("floor.toml", "0,0,0", "ideal", "1"),
+        ("room", "0.7,0.7,45", "ideal", "1"),
+        ("hall", "1.5,5,20", "scout", "1"),
+        ("maze", "4.2,0.6,120", "scout", "8"),
+    ];
+    for (world, start, body, seed) in worlds {
+        let run = run(&ahead, &["--world", world, "--start", start, "--body", body, "--seed", seed]);
         let trail = run.relative();
         let [ahead, left, _] = trail[trail.len() - 1];
         // The plan measures the distance by odometry, which has errors on a body such as the Scout's.
