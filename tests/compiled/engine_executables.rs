@@ -1,5 +1,5 @@
-//! Tests executables that contain the engine: `mdlec PLAN --target TARGET --engine` builds a program that needs no other
-//! file and behaves like `mdle run PLAN --target TARGET`.
+//! Tests executables that contain the engine: `mdlec PLAN --target TARGET --engine` builds a program that needs no
+//! other file and behaves like `mdle run PLAN --target TARGET`.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -104,7 +104,7 @@ fn the_program_does_what_mdle_run_does() {
 #[test]
 fn what_cannot_have_the_engine_is_refused() {
     let folder = prepared("refused");
-    fs::write(folder.join("wrong.mdle"), "{ Wrong (range(heading module) < 60kg) (Atom (null) stop) }\n").unwrap();
+    fs::write(folder.join("wrong.mdle"), "{ Wrong (range(heading module) < 60deg) (Atom (null) stop) }\n").unwrap();
     fs::write(folder.join("two.toml"), "[[robot]]\nname = \"a\"\nfile = \"back.mdle\"\n").unwrap();
     let mut messages = String::new();
     for (arguments, wanted) in [

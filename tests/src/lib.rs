@@ -2,6 +2,7 @@
 //! of the repository.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test tool fails by panicking")]
+#![allow(clippy::print_stdout, reason = "a test tells what it has measured")]
 
 pub mod any_bytes;
 pub mod any_file;

@@ -187,7 +187,7 @@ impl Embodied for Timed {
 }
 
 /// Runs the plans on three emulated Scouts in one world, and returns their runs. Programs that do not end within
-/// [`LONGEST`] are killed.
+/// `LONGEST` are killed.
 pub fn on_scouts(folder: &Path, begin: Begin<'_>, pace: Pace, seed: u64, victim: Option<Victim>) -> [Course; 3] {
     let (world, time) = (World::parse("floor", FLOOR).unwrap(), Rc::new(Cell::new(Duration::ZERO)));
     let seat = |number: usize| {

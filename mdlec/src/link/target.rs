@@ -104,7 +104,7 @@ fn builtin(name: &str, crate_name: &str, sources: &SourcesCopy) -> Result<Depend
     })
 }
 
-/// Returns the dependencies of a scenario and of a plan with the engine: only the package that runs both, which includes
+/// Returns the dependencies of a scenario and of a plan with the engine: only the package that runs both. It includes
 /// all robots and the compiler.
 pub(super) fn engine_dependencies(sources: &SourcesCopy) -> Dependencies {
     let (name, folder) = sources::RUNNER;

@@ -1,5 +1,5 @@
-//! Plans inside executables that contain the engine. `mdlec PLAN --target TARGET --engine` copies the files of a plan into
-//! an executable, which runs the plan in the same way as `mdle run PLAN --target TARGET`.
+//! Plans inside executables that contain the engine. `mdlec PLAN --target TARGET --engine` copies the files of a plan
+//! into an executable, which runs the plan in the same way as `mdle run PLAN --target TARGET`.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;

@@ -203,8 +203,8 @@ struct PlanRun<'r> {
 }
 
 impl PlanRun<'_> {
-    /// Compiles and loads the plan `wanted`; without a name, the only plan. Returns the name of the plan, and the loaded
-    /// plan. Messages go to standard error.
+    /// Compiles and loads the plan `wanted`; without a name, the only plan. Returns the name of the plan, and the
+    /// loaded plan. Messages go to standard error.
     fn compiled(&self, wanted: Option<&str>, input: &mut Input) -> Result<(String, Box<dyn ReadyPlan>), Failure> {
         if let Some(name) = wanted {
             input.must_have(name)?;

@@ -21,7 +21,7 @@ use mdle_emulator::{Ailment, Emulated, Fault, Faulty, MotionOrder, Pace, Port, S
 use mdle_scout_emulator::scout::Scout;
 use mdle_scout_emulator::wire::answer;
 use mdle_sim::{Body, Make, Simulated, World};
-use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::executable::{folder, run_mdlec_aside};
 use mdle_tests::repository::root;
 
 use self::page::Row;
@@ -86,7 +86,7 @@ impl Robot {
     fn new(target: &str) -> Self {
         let folder = folder(&format!("faults_on_{target}"));
         fs::write(folder.join("approach.mdle"), PLAN).unwrap();
-        let output = run_mdlec(&folder, &["approach.mdle", "--target", target]);
+        let output = run_mdlec_aside(&folder, &["approach.mdle", "--target", target]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         Self(folder.join("approach"))
     }

@@ -15,7 +15,7 @@ use mdle_atrv_emulator::atrv::{Atrv, step};
 use mdle_emulator::{Emulated, Faulty, MotionOrder, OrderLog, Pace, Port, ScheduledFault, serve};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::{Body, Make, Simulated, World};
-use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::executable::{folder, run_mdlec_aside};
 use rustix::fs::OFlags;
 
 /// A plan that drives, stops for a while, and is over.
@@ -79,7 +79,7 @@ pub(crate) fn executable<R: Robot>() -> &'static Path {
     BUILT[usize::from(R::TARGET == "atrv")].get_or_init(|| {
         let folder = folder(&format!("stands_on_{}", R::TARGET));
         fs::write(folder.join("drive.mdle"), PLAN).unwrap();
-        let output = run_mdlec(&folder, &["drive.mdle", "--target", R::TARGET]);
+        let output = run_mdlec_aside(&folder, &["drive.mdle", "--target", R::TARGET]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         folder.join("drive")
     })

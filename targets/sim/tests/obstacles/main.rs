@@ -42,7 +42,7 @@ fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, sha
 fn a_doorway_fifteen_centimetres_wider_is_passed() {
     assert_clean("doorway", worlds::doorway, Body::Ideal, 95);
     assert_clean("doorway", worlds::doorway, Body::Scout, 90);
-    assert_clean("doorway", worlds::doorway, Body::Atrv, 80);
+    assert_clean("doorway", worlds::doorway, Body::Atrv, 90);
 }
 
 #[test]
@@ -55,8 +55,8 @@ fn a_box_in_the_middle_of_a_hallway_is_passed() {
 #[test]
 fn a_corner_is_left() {
     assert_clean("corner", worlds::corner, Body::Ideal, 90);
-    assert_clean("corner", worlds::corner, Body::Scout, 75);
-    assert_clean("corner", worlds::corner, Body::Atrv, 70);
+    assert_clean("corner", worlds::corner, Body::Scout, 90);
+    assert_clean("corner", worlds::corner, Body::Atrv, 90);
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn the_room_of_the_simulator_is_crossed() {
 #[test]
 fn random_rooms_with_narrow_gaps_are_crossed() {
     assert_clean("random", worlds::random, Body::Ideal, 90);
-    assert_clean("random", worlds::random, Body::Scout, 75);
+    assert_clean("random", worlds::random, Body::Scout, 90);
     assert_clean("random", worlds::random, Body::Atrv, 80);
 }
 
