@@ -33,6 +33,9 @@ fn three_executables_on_three_scouts_learn_a_short_way() {
     for (name, plan, ..) in ROBOTS {
         let (messages, status) = built(&folder, &format!("{plan}.mdle --target scout --engine -o {name}/program"));
         assert_eq!(status, Some(0), "{messages}");
+        // Who asks for the version needs no link, although the plan names other robots.
+        let (version, err, status, _) = run(&folder.join(name).join("program"), &folder, "version", "--version");
+        assert!(status == Some(0) && version.contains(", target scout, "), "{version}{err}");
         // The executable contains the text of its plan.
         fs::remove_file(folder.join(plan).with_extension("mdle")).unwrap();
     }
@@ -106,6 +109,11 @@ fn what_cannot_have_the_engine_is_refused() {
     let folder = prepared("refused");
     fs::write(folder.join("wrong.mdle"), "{ Wrong (range(heading module) < 60deg) (Atom (null) stop) }\n").unwrap();
     fs::write(folder.join("two.toml"), "[[robot]]\nname = \"a\"\nfile = \"back.mdle\"\n").unwrap();
+    for (folder_name, text) in [("ruled", "safety = \"rules.toml\"\n"), ("heard", "[modules]\nnose = \"cat\"\n")] {
+        fs::create_dir(folder.join(folder_name)).unwrap();
+        fs::write(folder.join(folder_name).join("mdle.toml"), text).unwrap();
+        fs::write(folder.join(folder_name).join("back.mdle"), BACK).unwrap();
+    }
     let mut messages = String::new();
     for (arguments, wanted) in [
         ("approach.mdle --target sim", 1),
@@ -116,6 +124,8 @@ fn what_cannot_have_the_engine_is_refused() {
         ("wrong.mdle --target sim --engine", 1),
         ("approach.mdle --target sim --engine --plan Back2", 2),
         ("two.toml --target sim --engine", 2),
+        ("ruled/back.mdle --target sim --engine", 2),
+        ("heard/back.mdle --target sim --engine", 2),
     ] {
         let (message, status) = built(&folder, arguments);
         assert_eq!(status, Some(wanted), "{arguments}: {message}");

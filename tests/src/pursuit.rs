@@ -72,7 +72,7 @@ pub fn prepare(
 pub struct Course {
     /// Exit status; `None` if the program was killed.
     pub status: Option<i32>,
-    /// What the program printed.
+    /// Standard output of the program, followed by its standard error.
     pub report: String,
     /// For each trip, `true` if the robot led it, and the robot's positions by odometry.
     trips: Vec<(bool, Vec<Point>)>,

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::compiled::needs_target;
+use super::executable::{BuiltExecutable, default_output};
 use super::progress::build_package;
 use super::scenario::constant;
 use super::version::version;
@@ -13,28 +13,23 @@ use crate::link::{Entry, Package, TargetCrate};
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_files::{Input, Settings, Target, read_plan};
 
-/// Builds the executable of the plan in the file at `path`, and returns the path of the executable.
+/// Builds the executable of the plan in the file at `path`; `settings` are those beside the plan.
 pub(super) fn build(
     options: &ExecutableArguments,
     path: &Path,
     output: Option<PathBuf>,
     machine: Option<&str>,
-) -> Result<PathBuf, CommandFailure> {
+    settings: Settings,
+) -> Result<BuiltExecutable, CommandFailure> {
     let started = Instant::now();
-    let settings = Settings::beside(path)?;
-    needs_target(settings.names_target(options.target.as_deref()))?;
     let name = settings.name_of_target(options.target.as_deref()).unwrap_or_default();
-    let known = mdle::engine_targets();
-    if !known.contains(&name.as_str()) {
-        let (near, known) = (did_you_mean(&name, &known), known.join(", "));
-        let sentence = format!("the engine has no driver for `{name}`{near}\nhelp: `--engine` is for {known}");
-        return Err(CommandFailure::usage(sentence));
-    }
+    must_have_driver(&name)?;
+    must_be_whole(&settings)?;
     let target = settings.target(options.target.as_deref())?;
     let mut input = read_plan(path, &target)?;
     let plan_name = checked(&mut input, &target, options)?;
-    let files: Vec<_> = input.files().zip(input.texts()).map(named).collect::<Result<_, _>>()?;
-    let crate_name = &target.alphabet.crate_name;
+    let files = input.files().map(Path::to_owned).zip(input.texts().map(|text| text.as_bytes().to_vec()));
+    let files = mdle::embeddable(files).map_err(CommandFailure::usage)?;
     let package = Package {
         plan_name: &plan_name,
         version: &version(input.texts().map(str::as_bytes), &target),
@@ -42,23 +37,35 @@ pub(super) fn build(
         inputs: &input.inputs(&target),
         entry: Entry::Engine { target: &name, plan: options.name.as_deref() },
         rust: &constant(&files),
-        target: &TargetCrate::Builtin { name: &name, crate_name },
+        target: &TargetCrate::Builtin { name: &name, crate_name: &target.alphabet.crate_name },
         machine,
     };
-    // Standard input has no file name, so the executable gets the name of the plan.
-    let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(&plan_name), PathBuf::from);
-    let output = output.unwrap_or(stem);
-    build_package(&package, &output, None, started)?;
-    Ok(output)
+    let path = output.unwrap_or_else(|| default_output(path, &plan_name));
+    build_package(&package, &path, None, started)?;
+    Ok(BuiltExecutable { path, settings })
 }
 
-/// Returns the name of a file as text, and the contents of the file.
-fn named((file, text): (&Path, &str)) -> Result<(String, Vec<u8>), CommandFailure> {
-    let Some(name) = file.to_str() else {
-        let sentence = "is no UTF-8 text, and an executable has its files by their names";
-        return Err(CommandFailure::usage(format!("the path {} {sentence}\nhelp: rename it", file.display())));
-    };
-    Ok((name.to_owned(), text.as_bytes().to_vec()))
+/// Refuses a robot for which the engine has no driver.
+fn must_have_driver(target: &str) -> Result<(), CommandFailure> {
+    let known = mdle::engine_targets();
+    if known.contains(&target) {
+        return Ok(());
+    }
+    let (near, known) = (did_you_mean(target, &known), known.join(", "));
+    let sentence = format!("the engine has no driver for `{target}`{near}\nhelp: `--engine` is for {known}");
+    Err(CommandFailure::usage(sentence))
+}
+
+/// Refuses settings with safety rules or modules, which the executable would not have: a plan that always needs rules
+/// must not run without them.
+fn must_be_whole(settings: &Settings) -> Result<(), CommandFailure> {
+    let safety = settings.safety().map(|entry| (entry.place, "safety rules", "--safety FILE"));
+    let module = settings.modules().next().map(|module| (module.place, "modules", "--module NAME=COMMAND"));
+    let Some((place, what, option)) = safety.or(module) else { return Ok(()) };
+    Err(CommandFailure::usage(format!(
+        "{place}: an executable takes its {what} from the command line only\nhelp: build it from a folder without this \
+         entry, and start it with `{option}`"
+    )))
 }
 
 /// Checks the plan, or all parts of a group's plan, and returns its name. Messages go to standard error.
@@ -75,7 +82,9 @@ fn checked(input: &mut Input, target: &Target, options: &ExecutableArguments) ->
     match group {
         // The link file of a run names the robot whose part the run drives.
         Some(group) => Ok(group.name),
-        None => Ok(input
-            .only(compiled.into_iter().map(|plan| (plan.plan.root.name.clone(), plan.plan.root.name)).collect())?),
+        None => {
+            let names = compiled.into_iter().map(|compiled| compiled.plan.root.name);
+            Ok(input.only(names.map(|name| (name.clone(), name)).collect())?)
+        }
     }
 }

@@ -53,9 +53,9 @@ pub(super) fn take_signals() -> Result<(), CommandFailure> {
 
 /// An executable that was built, with the settings of its plan.
 pub(super) struct BuiltExecutable {
-    path: PathBuf,
+    pub(super) path: PathBuf,
     /// Settings of the plan; empty for a scenario, which takes no options from an `mdle.toml`.
-    settings: Settings,
+    pub(super) settings: Settings,
 }
 
 /// Builds the executable of the plan in `path`. By default, the executable is for this machine and in the current
@@ -70,20 +70,17 @@ pub(super) fn build(
         let path = scenario::build(options, path, output, machine)?;
         return Ok(BuiltExecutable { path, settings: Settings::default() });
     }
-    if options.engine {
-        let settings = Settings::beside(path)?;
-        return Ok(BuiltExecutable { path: engine::build(options, path, output, machine)?, settings });
-    }
     let started = Instant::now();
     let settings = Settings::beside(path)?;
     needs_target(settings.names_target(options.target.as_deref()))?;
+    if options.engine {
+        return engine::build(options, path, output, machine, settings);
+    }
     let mut target = settings.target(options.target.as_deref())?;
     target.alphabet.has_engine = false;
     let Emitted { target, input, plan_name, rust } =
         emitted(path, target, options.name.as_deref(), options.deny_warnings)?;
-    // Standard input has no file name, so the executable gets the name of the plan.
-    let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(&plan_name), PathBuf::from);
-    let output = output.unwrap_or(stem);
+    let output = output.unwrap_or_else(|| default_output(path, &plan_name));
     let crate_name = &target.alphabet.crate_name;
     let target_crate = match &target.folder {
         None => TargetCrate::Builtin { name: &target.alphabet.name, crate_name },
@@ -102,6 +99,12 @@ pub(super) fn build(
     };
     build_package(&package, &output, target.folder.as_deref(), started)?;
     Ok(BuiltExecutable { path: output, settings })
+}
+
+/// Returns the default path of a plan's executable: the file name of the plan without its extension. Standard input has
+/// no file name, so the executable gets the name of the plan.
+pub(super) fn default_output(path: &Path, plan_name: &str) -> PathBuf {
+    path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(plan_name), PathBuf::from)
 }
 
 impl BuiltExecutable {

@@ -274,11 +274,13 @@ fn apart(arguments: Vec<OsString>, mut missing: usize) -> Result<(Vec<OsString>,
 /// Returns the help text about the options of the engine, for an executable that contains a plan and the engine; `None`
 /// if the options of the run do not request help.
 pub(crate) fn help_of_executables(options: &[OsString]) -> Option<String> {
-    let asks = options.iter().any(|option| HELP.iter().any(|help| option == help));
+    if !options.iter().any(|option| HELP.iter().any(|help| option == help)) {
+        return None;
+    }
     let hidden = ["file", "target", "plan", "deny-warnings"];
     let command = hidden.into_iter().fold(run(), |command, name| command.mut_arg(name, |arg| arg.hide(true)));
-    let command = command.disable_help_flag(true).help_template("Options of the engine:\n{options}\n\n");
-    asks.then(|| command.clone().render_help().to_string())
+    let mut command = command.disable_help_flag(true).help_template("Options of the engine:\n{options}\n\n");
+    Some(command.render_help().to_string())
 }
 
 /// Returns the definition of the command-line interface of `mdle`.

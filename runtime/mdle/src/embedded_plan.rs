@@ -1,10 +1,8 @@
 //! Plans inside executables that contain the engine. `mdlec PLAN --target TARGET --engine` copies the files of a plan
 //! into an executable, which runs the plan in the same way as `mdle run PLAN --target TARGET`.
 
-use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use mdle_engine::Library;
@@ -41,8 +39,7 @@ fn run(program: Program<'_>, files: &[(&str, &[u8])], target: &str, plan: Option
         // The help of the run follows, as soon as the plan is loaded.
         write!(std::io::stdout(), "{help}").map_err(|error| failure::unprinted(&error))?;
     }
-    let contents: BTreeMap<_, _> = files.iter().map(|(file, bytes)| (PathBuf::from(file), bytes.to_vec())).collect();
     let mut library = Library::new();
     modules::shipped(&mut library);
-    run_files(*arguments, &InputFiles::inside(Path::new(path), contents), program.version, &mut library, None)
+    run_files(*arguments, &InputFiles::embedded(files), program.version, &mut library, None)
 }

@@ -34,6 +34,12 @@ impl InputFiles {
         Self { path: path.to_owned(), contents: RefCell::new(contents), texts: OnceCell::new(), are_inside: true }
     }
 
+    /// Creates the files of a scenario or a plan from the copies in an executable, its own file first.
+    pub(crate) fn embedded(files: &[(&str, &[u8])]) -> Self {
+        let own = files.first().map_or("", |(path, _)| *path);
+        Self::inside(Path::new(own), files.iter().map(|(file, bytes)| (PathBuf::from(file), bytes.to_vec())).collect())
+    }
+
     /// Returns the contents of all files that have been read.
     pub(crate) fn into_contents(self) -> BTreeMap<PathBuf, Vec<u8>> {
         self.contents.into_inner()
@@ -103,6 +109,21 @@ impl InputFiles {
             failure::print(&input.sources, diagnostics);
         }
     }
+}
+
+/// Returns files, each with its contents, under names that the source code of an executable can contain.
+///
+/// # Errors
+/// Fails with a sentence if the path of a file is not UTF-8.
+pub fn embeddable(files: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) -> Result<Vec<(String, Vec<u8>)>, String> {
+    let named = |(file, bytes): (PathBuf, Vec<u8>)| match file.into_os_string().into_string() {
+        Ok(name) => Ok((name, bytes)),
+        Err(file) => {
+            let sentence = "is no UTF-8 text, and an executable has its files by their names";
+            Err(format!("the path {} {sentence}\nhelp: rename it", file.display()))
+        }
+    };
+    files.into_iter().map(named).collect()
 }
 
 fn no_file(path: &Path) -> InputError {

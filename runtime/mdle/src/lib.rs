@@ -50,6 +50,7 @@ use std::process::ExitCode;
 use arguments::ParsedCommand;
 pub use embedded_plan::{engine_targets, run_plan};
 use failure::Failure;
+pub use input_files::embeddable;
 pub use link::{OpenRouter, RouterSettings};
 pub use mdle_engine as engine;
 use mdle_engine::Library;

@@ -193,7 +193,7 @@ fn beside(arguments: &RunArguments, ready: &dyn ReadyPlan) -> String {
     parts.into_iter().filter_map(|(is_there, words)| is_there.then_some(words)).collect::<Vec<_>>().join(" and ")
 }
 
-/// What a plan is compiled and loaded for.
+/// The arguments, files and target of a run, for which its plan is compiled and loaded.
 struct PlanRun<'r> {
     arguments: &'r RunArguments,
     files: &'r InputFiles,

@@ -1,7 +1,6 @@
 //! Scenarios inside executables. `mdlec SCENARIO.toml --target sim` copies all files that a scenario reads into an
 //! executable, which runs the scenario in the same way as `mdle run`.
 
-use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -13,7 +12,7 @@ use super::arguments::ScenarioOptions;
 use super::{ReadyPlan, run_with};
 use crate::arguments::{ParsedCommand, parse};
 use crate::failure::Failure;
-use crate::input_files::InputFiles;
+use crate::input_files::{InputFiles, embeddable};
 use crate::modules;
 
 /// Returns the names and contents of all files that the scenario at `path` reads; the scenario's own file comes first.
@@ -35,14 +34,7 @@ fn read(path: &Path) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let is_other = |(file, _): &(PathBuf, _)| file != path;
     let (mut others, mut own): (Vec<_>, Vec<_>) = contents.into_iter().partition(is_other);
     own.append(&mut others);
-    let named = |(file, bytes): (PathBuf, Vec<u8>)| match file.into_os_string().into_string() {
-        Ok(name) => Ok((name, bytes)),
-        Err(file) => {
-            let sentence = "is no UTF-8 text, and an executable has its files by their names";
-            Err(Failure::Usage(format!("the path {} {sentence}\nhelp: rename it", file.display())))
-        }
-    };
-    own.into_iter().map(named).collect()
+    embeddable(own).map_err(Failure::Usage)
 }
 
 /// Runs a scenario in the same way as `mdle run`, with the options of this process. `files` contains the files that
@@ -58,8 +50,7 @@ fn run(program: Program<'_>, files: &[(&str, &[u8])]) -> Result<ExitCode, Failur
     let words = ["mdle", "run", path].map(OsString::from).into_iter().chain(std::env::args_os().skip(1));
     let ParsedCommand::Run(arguments) = parse(words.collect())? else { return Ok(ExitCode::SUCCESS) };
     let options = ScenarioOptions::read(&arguments, Some(program))?;
-    let contents: BTreeMap<_, _> = files.iter().map(|(file, bytes)| (PathBuf::from(file), bytes.to_vec())).collect();
     let mut library = Library::new();
     modules::shipped(&mut library);
-    run_with(&options, &InputFiles::inside(Path::new(path), contents), &library)
+    run_with(&options, &InputFiles::embedded(files), &library)
 }
