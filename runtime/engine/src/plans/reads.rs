@@ -1,6 +1,8 @@
 //! Module attributes that a plan reads: their values in a turn, and the wait for missing ones before the plan can begin
 //! (docs/src/reference/semantics.md, 2.5).
 
+use std::collections::BTreeSet;
+
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_runtime::{ModuleRead, Nanos, PUBLISHED, Published, PublishedNumber};
 
@@ -75,9 +77,9 @@ fn paths(missing: &[&ModuleRead]) -> String {
 /// the modules of these attributes that are not loaded. Empty if all attributes in `reads` have been published.
 pub(super) fn awaited(reads: &'static [ModuleRead], board: &Board, now: Nanos) -> String {
     let Err(Unready::Missing(missing)) = published(reads, board, now) else { return String::new() };
-    let mut absent: Vec<_> = missing.iter().filter(|read| board.of(read.module).next().is_none()).collect();
-    absent.dedup_by_key(|read| read.module);
-    let absent: String = absent.iter().map(|read| format!("; no module `{}` is loaded", read.module)).collect();
+    let absent = missing.iter().map(|read| read.module).filter(|module| board.of(module).next().is_none());
+    let absent: BTreeSet<_> = absent.collect();
+    let absent: String = absent.iter().map(|module| format!("; no module `{module}` is loaded")).collect();
     let paths = paths(&missing);
     let verb = if paths.contains(" and ") { "are" } else { "is" };
     format!(", once {paths} {verb} published{absent}")
