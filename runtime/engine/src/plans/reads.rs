@@ -55,8 +55,8 @@ pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
     if missing.iter().all(|read| board.place_of(read).is_some()) {
         return format!(
             "the plan reads {paths}, which no module has published within {seconds} s\nhelp: a module in the \
-             background that needs longer declares its `latency`, and the plan waits 2 s longer than that; what a \
-             module publishes only while the robot moves is for a plan that takes over later"
+             background that needs longer declares its `latency`, and the plan waits 2 s longer than that; if the \
+             module publishes only while the robot moves, begin with another plan and `swap` this one in"
         );
     }
     let absent = missing.iter().find(|read| board.place_of(read).is_none());
