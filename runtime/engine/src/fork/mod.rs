@@ -2,6 +2,8 @@
 //! for the workers, until a deadline (paper, section III-A).
 
 mod seat;
+#[cfg(test)]
+mod tests;
 
 use std::hint::spin_loop;
 use std::io;
@@ -15,6 +17,8 @@ use rustix::thread::futex;
 use rustix::time::Timespec;
 pub(crate) use seat::{Seat, Task, TurnProgress};
 
+/// Number of modules for which a new round has room. A larger round allocates memory when it is first used.
+const ROOM: usize = 32;
 /// Maximum expected duration of a round that is run by a single worker. Waking a second worker would take longer than
 /// such a round.
 const SMALL: Duration = Duration::from_micros(50);
@@ -35,8 +39,9 @@ pub enum Threads {
 /// Threads that run the turns of modules.
 pub(crate) struct Fork<Y> {
     crew: Option<Crew<Y>>,
-    /// Rounds that are reused. More than one is needed, because a worker may use the previous round for a short time
-    /// longer, and a module that hangs keeps its round forever.
+    /// Rounds that are reused. [`RoundExchange`] keeps the last round, and each worker may use an earlier round for a
+    /// short time longer; the fork begins with one round more than these, so that a turn finds an unused round. A
+    /// module that hangs keeps its round forever.
     rounds: Vec<Arc<Round<Y>>>,
 }
 
@@ -81,7 +86,9 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
             Threads::Sequential => None,
             Threads::Workers(workers, prepare) => Some(Crew::new(workers.max(1), prepare)?),
         };
-        Ok(Self { crew, rounds: Vec::new() })
+        let used = crew.as_ref().map_or(0, |crew| crew.workers + 1);
+        let rounds = (0..=used).map(|_| Arc::new(Round::default())).collect();
+        Ok(Self { crew, rounds })
     }
 
     /// Makes a turn of these modules. Threads take the modules in this order; modules that have not finished at the
@@ -111,7 +118,7 @@ impl<Y: Send + Sync + 'static> Fork<Y> {
         self.rounds.push(round);
     }
 
-    /// Prepares a round. Does not allocate if an unused earlier round is large enough.
+    /// Prepares a round. Does not allocate if an unused round is large enough.
     fn round<'s>(
         &mut self,
         y: Y,
@@ -148,7 +155,7 @@ impl<Y> Default for Round<Y> {
             y: None,
             number: 0,
             now: Nanos::ZERO,
-            seats: Vec::new(),
+            seats: Vec::with_capacity(ROOM),
             cost: Duration::ZERO,
             next: AtomicUsize::new(0),
             left: AtomicU32::new(0),
