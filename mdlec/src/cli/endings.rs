@@ -1,5 +1,5 @@
-//! Checks the extensions of output files before any input is read, and refuses extensions of formats that the command
-//! does not write.
+//! Checks the extensions of output files before any input is read, refuses extensions of formats that the command does
+//! not write, and names the output file that no option names.
 
 use std::path::{Path, PathBuf};
 
@@ -48,4 +48,10 @@ pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(),
         plan.display(),
         picture.display()
     )))
+}
+
+/// Returns the default path of a plan's executable: the file name of the plan without its extension. Standard input has
+/// no file name, so the executable gets the name of the plan.
+pub(super) fn default_output(path: &Path, plan_name: &str) -> PathBuf {
+    path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(plan_name), PathBuf::from)
 }

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::executable::{BuiltExecutable, default_output};
+use super::endings::default_output;
 use super::progress::build_package;
 use super::scenario::constant;
 use super::version::version;
@@ -13,18 +13,18 @@ use crate::link::{Entry, Package, TargetCrate};
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_files::{Input, Settings, Target, read_plan};
 
-/// Builds the executable of the plan in the file at `path`; `settings` are those beside the plan.
+/// Builds the executable of the plan in the file at `path`, and returns its path; `settings` are those beside the plan.
 pub(super) fn build(
     options: &ExecutableArguments,
     path: &Path,
     output: Option<PathBuf>,
     machine: Option<&str>,
-    settings: Settings,
-) -> Result<BuiltExecutable, CommandFailure> {
+    settings: &Settings,
+) -> Result<PathBuf, CommandFailure> {
     let started = Instant::now();
     let name = settings.name_of_target(options.target.as_deref()).unwrap_or_default();
     must_have_driver(&name)?;
-    must_be_whole(&settings)?;
+    must_be_whole(settings)?;
     let target = settings.target(options.target.as_deref())?;
     let mut input = read_plan(path, &target)?;
     let plan_name = checked(&mut input, &target, options)?;
@@ -42,7 +42,7 @@ pub(super) fn build(
     };
     let path = output.unwrap_or_else(|| default_output(path, &plan_name));
     build_package(&package, &path, None, started)?;
-    Ok(BuiltExecutable { path, settings })
+    Ok(path)
 }
 
 /// Refuses a robot for which the engine has no driver.

@@ -74,13 +74,14 @@ pub(super) fn build(
     let settings = Settings::beside(path)?;
     needs_target(settings.names_target(options.target.as_deref()))?;
     if options.engine {
-        return engine::build(options, path, output, machine, settings);
+        let path = engine::build(options, path, output, machine, &settings)?;
+        return Ok(BuiltExecutable { path, settings });
     }
     let mut target = settings.target(options.target.as_deref())?;
     target.alphabet.has_engine = false;
     let Emitted { target, input, plan_name, rust } =
         emitted(path, target, options.name.as_deref(), options.deny_warnings)?;
-    let output = output.unwrap_or_else(|| default_output(path, &plan_name));
+    let output = output.unwrap_or_else(|| endings::default_output(path, &plan_name));
     let crate_name = &target.alphabet.crate_name;
     let target_crate = match &target.folder {
         None => TargetCrate::Builtin { name: &target.alphabet.name, crate_name },
@@ -99,12 +100,6 @@ pub(super) fn build(
     };
     build_package(&package, &output, target.folder.as_deref(), started)?;
     Ok(BuiltExecutable { path: output, settings })
-}
-
-/// Returns the default path of a plan's executable: the file name of the plan without its extension. Standard input has
-/// no file name, so the executable gets the name of the plan.
-pub(super) fn default_output(path: &Path, plan_name: &str) -> PathBuf {
-    path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(plan_name), PathBuf::from)
 }
 
 impl BuiltExecutable {
