@@ -17,7 +17,7 @@ use mdle_tests::repository::root;
 use serde_json::Value;
 
 /// Number of random plans.
-const PLANS: u64 = 60;
+const PLANS: u64 = 120;
 /// Number of scripts of each plan.
 const SCRIPTS: usize = 4;
 

@@ -21,7 +21,7 @@ use mdle_tests::random_script::script;
 use mdle_tests::repository::root;
 
 /// Number of random plans that are emitted in each shape. `SCRIPTS` is the number of scripts on which each plan runs.
-const PLANS: u64 = 20;
+const PLANS: u64 = 40;
 const SCRIPTS: u64 = 25;
 
 /// Names of plans that could collide with names in a generated file.

@@ -16,7 +16,7 @@ use mdle_tests::scxml::Machine;
 use mdle_tests::xml::read;
 
 /// Number of random plans.
-const PLANS: u64 = 50;
+const PLANS: u64 = 100;
 /// Maximum number of states of a plan that is tested.
 const STATES: u64 = 150;
 

@@ -11,7 +11,7 @@ use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 
 /// Number of mutated machines.
-const MUTATIONS: u64 = 170;
+const MUTATIONS: u64 = 340;
 
 /// A function that makes a random part of a machine wrong, or leaves the machine unchanged.
 type Mutation = fn(&mut MachineDraft, &mut Chance);

@@ -66,14 +66,14 @@ fn assert_arrive(text: &str, body: Body, count: u64, share: u64) {
 
 #[test]
 fn a_plan_by_measures_arrives_in_a_new_building() {
-    assert_arrive(BY_MEASURES, Body::Ideal, 10, 95);
-    assert_arrive(BY_MEASURES, Body::Scout, 10, 95);
-    assert_arrive(BY_MEASURES, Body::Atrv, 10, 60);
+    assert_arrive(BY_MEASURES, Body::Ideal, 20, 95);
+    assert_arrive(BY_MEASURES, Body::Scout, 20, 95);
+    assert_arrive(BY_MEASURES, Body::Atrv, 20, 60);
 }
 
 #[test]
 fn a_plan_by_landmarks_arrives_in_a_new_building() {
-    assert_arrive(BY_LANDMARKS, Body::Ideal, 10, 95);
-    assert_arrive(BY_LANDMARKS, Body::Scout, 10, 95);
-    assert_arrive(BY_LANDMARKS, Body::Atrv, 10, 80);
+    assert_arrive(BY_LANDMARKS, Body::Ideal, 20, 95);
+    assert_arrive(BY_LANDMARKS, Body::Scout, 20, 95);
+    assert_arrive(BY_LANDMARKS, Body::Atrv, 20, 80);
 }

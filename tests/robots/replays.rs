@@ -26,7 +26,7 @@ const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
 /// Number of kinds of runs.
 const KINDS: u64 = 10;
 /// Number of runs if the variable `MDLE_LONG` is 1; without the variable, half as many.
-const RUNS: u64 = 50;
+const RUNS: u64 = 100;
 
 /// Files of all runs. `Rounds` has a loop, a memory, a rising condition and a frame; `Sound` and `Ears` read modules;
 /// `Back` is the plan to which a safety rule diverts, and uses another file.

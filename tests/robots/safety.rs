@@ -16,7 +16,7 @@ use mdle_tests::golden;
 use mdle_tests::repository::TextFile;
 
 /// Number of random plans for each body.
-const PLANS: u64 = 10;
+const PLANS: u64 = 20;
 const PERIOD: Duration = Duration::from_millis(100);
 const BODIES: [Body; 3] = [Body::Ideal, Body::Scout, Body::Atrv];
 

@@ -6,14 +6,15 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 /// Returns how often a test repeats something with different random choices: `count` times the number in the variable
 /// `MDLE_LONG`.
 ///
-/// Without the variable, returns half of `count`. `.ci/thorough` sets the variable.
+/// Without the variable, returns a quarter of `count`, so that the tests of a change end soon. `.ci/thorough` sets the
+/// variable.
 ///
 /// # Panics
 ///
 /// If the variable is not a whole number from 1 on.
 #[must_use]
 pub fn repeated(count: u64) -> u64 {
-    factor().map_or(count.div_ceil(2), |factor| count * factor)
+    factor().map_or(count.div_ceil(4), |factor| count * factor)
 }
 
 /// Returns the size of a test's input: `most` if the variable `MDLE_LONG` is more than 1, `less` if not. Used for

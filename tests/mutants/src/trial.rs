@@ -164,6 +164,8 @@ pub(crate) fn environment(command: &mut Command, checkout: &Checkout) {
         .env("CARGO_PROFILE_DEV_DEBUG", "false")
         // Backtraces are not needed, and producing one takes longer than most tests.
         .env("RUST_BACKTRACE", "0")
+        // A mutant that few random plans find is caught all the same.
+        .env("MDLE_LONG", "1")
         .env("INSTA_UPDATE", "no")
         .env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "true")
         .env("PROPTEST_RNG_SEED", "0");
