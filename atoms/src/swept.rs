@@ -12,7 +12,7 @@ use crate::winding::Winding;
 
 /// Maximum number of occupied cells that are considered; these are the nearest ones.
 const POINTS: usize = 96;
-/// Distance beyond the smallest circle around the body, in metres, within which cells are considered.
+/// Margin around the body's smallest enclosing circle, in metres. Occupied cells farther away are ignored.
 const WITHIN: f64 = 0.18;
 /// Turn rates to try, in rad/s.
 const RATES: [f64; 7] = [0.0, 0.15, -0.15, 0.35, -0.35, 0.7, -0.7];

@@ -14,8 +14,8 @@ use super::{Out, Room, Stage, Verdict};
 /// Tolerance of the final heading of a law that turns, in degrees, in addition to a fraction of the turn. It covers the
 /// law's own tolerance of 2 degrees, and the error of odometry.
 const DONE: f64 = 5.0;
-/// Tolerance of the heading of `align`, in degrees. The ranges that it compares may be wrong by an inch and a second
-/// old.
+/// Tolerance, in degrees, for the robot's heading after `align`. The ranges that the law compares may be off by an
+/// inch, and may be a second old.
 const SQUARE: f64 = 8.0;
 /// Maximum duration of a turn, in seconds.
 const TURNS: f64 = 25.0;

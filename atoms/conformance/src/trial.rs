@@ -13,7 +13,7 @@ use super::{Out, Room, Stage, Supplied, Verdict, stored_path};
 /// Maximum deviation of the robot from the pose that the suite requested, in metres and radians.
 const PUT: (f64, f64) = (0.02, 0.02);
 
-/// A robot in a room.
+/// A trial of the conformance suite: a robot in a room, with its last output and the number of exchanges so far.
 pub(super) struct Trial<'s, S: Stage> {
     stage: &'s mut S,
     pub(super) robot: S::Robot,

@@ -28,7 +28,7 @@ pub enum InputError {
     UnknownPlan {
         /// Name of the file.
         file: String,
-        /// Requested name.
+        /// Name of the requested plan.
         name: String,
         /// Names of the file's plans.
         plans: Vec<String>,

@@ -353,7 +353,7 @@ pub(super) struct Decompile {
     /// JSON file of the machine, as `--emit fsm` writes it; `-` for standard input
     #[arg(value_name = "FSM.json")]
     pub(super) machine: PathBuf,
-    /// Convert any machine, into one loop over its states with `after`
+    /// Accept any state machine: write it as one loop over its states, using `after`
     #[arg(long, conflicts_with = "as_printed")]
     pub(super) augment: bool,
     /// Judge by R1 to R4 as the paper prints them, and report differences

@@ -44,8 +44,9 @@ pub trait Plan {
         None
     }
 
-    /// Called before the cursor leaves a scope. A plan with memories of endings records the ending of the scope and
-    /// clears the memories of nested scopes. [`Cursor::ending`] returns the brackets that end.
+    /// Called before the cursor leaves a scope. A plan with memories records, for `after`, which elements end and why,
+    /// and clears the memories of all scopes that end. [`Cursor::ending`] returns the brackets of the elements that
+    /// end.
     #[inline(always)]
     fn leave(&mut self, _cursor: &Cursor<Self::Entered, Self::Left>, _cause: Cause, _y: &Self::Output, _t: Nanos) {}
 

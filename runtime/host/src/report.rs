@@ -203,7 +203,7 @@ impl<'a> ReportWriter<'a> {
 }
 
 impl Over {
-    /// Returns the end of `plan`, which this transition has caused.
+    /// Describes the end of `plan`, which `transition` has caused. `cause` is the cause as the report shows it.
     fn of(plan: &dyn Texts, transition: &Transition, operands: &[Operand], cause: String) -> Self {
         let source = plan.source();
         let unmeasured: Vec<Operand> = operands.iter().map(|(number, _)| (*number, Measured::Nothing)).collect();

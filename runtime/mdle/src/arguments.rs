@@ -87,7 +87,7 @@ pub(crate) struct RunArguments {
     pub(crate) modules: Vec<(String, String)>,
     /// Point for the module `heading`, in metres; `None` if the option does not request the module.
     pub(crate) point: Option<(f64, f64)>,
-    /// Source of sound for the module `heading`; `None` if the option does not request the module.
+    /// Source of the audio samples for the module `heading`, as `--ears` names it; `None` without `--ears`.
     pub(crate) ears: Option<EarsOption>,
     /// Radius of the head with the ears, in metres.
     pub(crate) head: f64,

@@ -77,8 +77,8 @@ impl Command {
         }
     }
 
-    /// Returns the port, the opcode and the data of the command. The first number above [`NUDGES`] is reduced by
-    /// `nudge`.
+    /// Returns the port, the opcode and the data of the command. To change the checksum, the first number in the data
+    /// that is greater than [`NUDGES`] is reduced by `nudge`.
     fn data(&self, escape: Escape, nudge: u32) -> (u8, u8, Data) {
         let mut data = Data { escape, nudge, bytes: [0; MOST], count: 0 };
         let (port, opcode) = match *self {

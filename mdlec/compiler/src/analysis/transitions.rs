@@ -52,7 +52,8 @@ pub(super) fn most(machine: &Machine) -> Most {
     Most { count: count.min(limit), is_cut: count > limit }
 }
 
-/// Maximum lengths of chains of transitions within an element, or within consecutive elements.
+/// Lengths of the longest chains of transitions that one turn can make within an element, or within consecutive
+/// elements.
 #[derive(Debug, Clone, Copy)]
 struct Chains {
     /// Length of a chain from the beginning to the end; `None` if the element cannot be passed in one turn.

@@ -60,7 +60,7 @@ pub(super) enum Skip {
 /// Result of the analysis of one operand of an interrupt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum OperandOutcome {
-    /// The interrupt can fire by the operand.
+    /// The operand can make the interrupt fire.
     Possible,
     /// The operand is never true.
     Never,

@@ -22,7 +22,7 @@ pub struct FsmFile {
     pub states: Vec<String>,
     /// Name of the state in which the plan begins.
     pub start: String,
-    /// Quark text of the law of each state except the termination state.
+    /// Text of each state's law, such as `go 20 0`; the termination state has none.
     pub laws: Vec<String>,
     /// The interrupts in pre-order of the expanded plan, followed by the completion of laws.
     pub interrupts: Vec<InterruptEntry>,

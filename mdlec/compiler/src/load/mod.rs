@@ -66,12 +66,12 @@ impl fmt::Display for LoadError {
 
 impl Error for LoadError {}
 
-/// Loads the plan of a machine for the robot of the bound alphabet `A`; `alphabet` is the alphabet for which
-/// the plan was compiled.
+/// Loads a compiled plan for the robot type that is bound to the alphabet `A`; `alphabet` is the alphabet for which the
+/// plan was compiled.
 ///
 /// # Errors
-/// Fails if the robot's crate is bound to another alphabet or lacks a quark, or if the plans of this process have too
-/// many names, or if the plan reads too many attributes or names too many robots.
+/// Fails if `A` differs from `alphabet`; if the robot's crate lacks a quark of the plan; if the names in all plans that
+/// this process has loaded would become too long; or if the plan reads too many attributes or names too many robots.
 pub fn load<A: mdle_runtime::Alphabet>(
     machine: &Machine,
     sources: &Sources,

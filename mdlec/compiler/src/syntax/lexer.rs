@@ -75,7 +75,8 @@ struct Reader<'s> {
     run: Option<TextRange>,
     /// End of a file name that was read as a string although it is not in double quotes.
     skipped: usize,
-    /// State for processing dots in signals; `None` before the head of a group has been read.
+    /// State for joining the tokens of `robot1.x` into one name. Only plans of groups contain such names: `None` until
+    /// `{ Group [` has been read.
     dots: Option<Dots>,
 }
 

@@ -34,7 +34,8 @@ pub struct MatrixProduct<'p> {
     has_begun: bool,
 }
 
-/// An interrupt whose matrix is the next factor.
+/// The next factor of the product: the matrix of the interrupt that has fired or, if the law has completed, of the
+/// atom's own interrupt.
 struct Factor<'p> {
     number: usize,
     /// Text of the interrupt, as the trace shows it.

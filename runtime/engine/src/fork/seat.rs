@@ -10,7 +10,8 @@ use mdle_runtime::Nanos;
 
 use crate::module::{Fault, Module, Ports, Turn, panicked};
 
-/// A registered module that the threads of a turn share, with the progress of its turn and its cost (mean turn time).
+/// A registered module, shared by the threads that run the modules of a turn. Contains the progress of the module's
+/// turn, and the mean time of its turns (the cost).
 pub(crate) struct Seat<Y> {
     /// Name of the module.
     name: Arc<str>,

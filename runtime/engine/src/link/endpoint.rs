@@ -126,12 +126,13 @@ impl Endpoint {
         now.since(self.begun)
     }
 
-    /// Processes a frame, without its length field, from a source. The first frame of a source must be a state, because
-    /// a state proves the name of the robot.
+    /// Processes a frame, without its length field, from `source`. The first frame of a connection must be a state: it
+    /// proves the name of the robot. A letter that is refused is reported, and is not an error.
     ///
     /// # Errors
-    /// Returns the end of a sentence if the source must be closed because it sends anything other than states and
-    /// letters of one peer, or because it sends too many of them.
+    /// Returns the reason, as a clause such as `it sends a letter before its state`, if the caller has to close the
+    /// source. For example, the frame may have another key or version, come from another robot than before, or be one
+    /// of too many in a second.
     pub fn take(&self, source: &mut FrameSource, frame: &[u8]) -> Result<(), String> {
         let now = clock::now();
         if is_letter(frame) {

@@ -274,8 +274,8 @@ impl Simulated {
         }
     }
 
-    /// Drives for one period with `input`, which is the first half of an exchange. If several robots share a world, all
-    /// of them move before the output of any of them is computed.
+    /// Drives with `input` for one period. This is the first half of an exchange; [`Simulated::senses`] is the second.
+    /// If several robots share a world, all of them move before the output of any of them is computed.
     ///
     /// # Errors
     /// Fails if the input is not finite.

@@ -65,7 +65,8 @@ impl Pass<'_, '_> {
         }
     }
 
-    /// Closes all open brackets except the first `depth`. They are closed before a token that seems to come after them.
+    /// Closes all open brackets except the outermost `depth`, and reports them as never closed. `at` is the place of
+    /// the token before which they seem to end.
     pub(super) fn close_down_to(&mut self, depth: usize, at: TextRange) {
         while let Some(open) = self.open.last().copied().filter(|_| self.open.len() > depth) {
             if open.kind == BracketKind::Brace {
