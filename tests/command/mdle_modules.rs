@@ -5,7 +5,7 @@ use std::fs;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 
-use mdle_tests::executable::folder;
+use mdle_tests::executable::{folder, mdle};
 
 /// Returns the dialogue with the program that has modules, its standard error, and its exit status.
 fn dialogue(test: &str, options: &[&str], commands: &str) -> String {
@@ -20,6 +20,18 @@ fn dialogue(test: &str, options: &[&str], commands: &str) -> String {
     let output = child.wait_with_output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     format!("{out}---\n{err}[{}]\n", output.status.code().unwrap())
+}
+
+#[test]
+fn only_a_run_is_warned_of_a_missing_module() {
+    let folder = folder("modules_warning");
+    fs::write(folder.join("plan.mdle"), "{ Near (wait 1s)\n  (Atom (range(heading module) < 1m) stop)\n}\n").unwrap();
+    let warned = ["--help", "--nonsense", "--speed max"].map(|options| {
+        let mut command = Command::new(mdle());
+        command.args(["run", "plan.mdle", "--target", "sim"]).args(options.split(' ')).current_dir(&folder);
+        String::from_utf8(command.output().unwrap().stderr).unwrap().contains("warning: the plan reads the module")
+    });
+    assert_eq!(warned, [false, false, true]);
 }
 
 #[test]

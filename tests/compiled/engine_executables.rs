@@ -97,10 +97,11 @@ fn the_program_does_what_mdle_run_does() {
         assert_eq!(without_usage(&made.1), without_usage(&expected.1), "{options}");
     }
     assert_eq!(made.map(|(_, _, status, _)| status), [Some(0), Some(4), Some(2)]);
-    let (help, _, status, _) = run(&folder.join("program"), &folder, "help", "--help");
-    assert!(help.contains("--link <FILE>") && help.contains("Usage: Approach [OPTIONS]\n"), "{help}");
-    assert_eq!(status, Some(0));
-    let (version, ..) = run(&folder.join("program"), &folder, "version", "--version");
+    let (help, messages, status, _) = run(&folder.join("program"), &folder, "help", "--help");
+    assert!(help.contains("--link <FILE>") && help.contains("Usage: program [OPTIONS]\n"), "{help}");
+    assert_eq!((&*messages, status), ("", Some(0)));
+    let (version, messages, ..) = run(&folder.join("program"), &folder, "version", "--version");
+    assert_eq!(messages, "");
     assert!(version.starts_with("Approach (text ") && version.contains(", target sim, alphabet "), "{version}");
 }
 

@@ -101,11 +101,17 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call)
     let command = match call.several_words() {
         Some(words) if program.version.is_empty() => required::argument(command).bin_name(words),
         // The words are those of `mdle run`, whose plan is inside this executable.
-        Some(_) => required::argument(command).bin_name(program.plan),
+        Some(_) => required::argument(command).bin_name(own_name().unwrap_or_else(|| program.plan.to_owned())),
         None => required::argument(command),
     };
     let command = if program.version.is_empty() { command } else { command.version(program.version.to_owned()) };
     with_statuses((target.arguments)(if target.fastest.is_some() { paths::arguments(command) } else { command }))
+}
+
+/// Returns the file name by which this process was called.
+fn own_name() -> Option<String> {
+    let called = PathBuf::from(std::env::args_os().next()?);
+    Some(called.file_name()?.to_string_lossy().into_owned())
 }
 
 /// Adds the exit statuses to the help text of `command`, which must already have all its options.

@@ -72,13 +72,10 @@ pub(crate) fn run_files(
     let wanted = part.as_deref().or(named);
     let run = PlanRun { arguments: &arguments, files, linked: &linked, target: &target, safety: safety.as_ref() };
     let (plan, mut ready) = run.compiled(wanted, &mut input)?;
-    if ready.reads(HEADING) && arguments.lacks_heading(library) {
-        let help = "`--ears robot` loads one that hears sounds, and `--point X,Y` one that knows a point";
-        failure::warning(&format!("the plan reads the module `{HEADING}`, and none is loaded\nhelp: {help}"));
-    }
+    // Who asks for help or for the version needs neither the module nor a link.
+    let lacks_heading = !arguments.asks() && ready.reads(HEADING) && arguments.lacks_heading(library);
     ready.hears(arguments.hearing()?);
     let linked_by = link.as_ref().map(|link| link.path().to_owned());
-    // Who asks for help or for the version needs no link.
     if !arguments.asks() {
         ready.link(link)?;
     }
@@ -106,6 +103,10 @@ pub(crate) fn run_files(
     let read = read.collect();
     drop(input);
     let call = Call { words: arguments.words, options, read, recorded, later_path: arguments.records };
+    if lacks_heading && (linked.check)(program, &call).is_ok() {
+        let help = "`--ears robot` loads one that hears sounds, and `--point X,Y` one that knows a point";
+        failure::warning(&format!("the plan reads the module `{HEADING}`, and none is loaded\nhelp: {help}"));
+    }
     let status = match &arguments.session {
         None => ready.run(program, call, library),
         Some(session) => session::held(session, &arguments.file, |seat| ready.session(&plan, call, library, seat))?,
