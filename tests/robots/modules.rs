@@ -190,7 +190,7 @@ fn a_plan_that_waits_in_vain_never_begins() {
     let mut run = Run::of(FOLLOW, &Library::new());
     let fault = std::iter::repeat_with(|| run.turn()).find_map(Result::err).unwrap();
     let sentence = "the plan reads /usr/heading/bearing and /usr/heading/range, which no module has published within 2 s\n\
-                    help: no module `heading` is loaded: `mdle run PLAN --module heading=COMMAND` loads one";
+                    help: no module `heading` is loaded: `--module heading=COMMAND` loads one";
     assert_eq!((fault, run.turns, run.input), (PilotFault::Stopped(sentence.into()), 20, Twist::default()));
 }
 
@@ -248,11 +248,11 @@ fn a_plan_that_waits_in_vain_names_the_modules() {
     let faults = ["range(ecko module) < 1m", "range(echo module) < 1m", "age(nose module) > 1s"].map(fault);
     insta::assert_snapshot!(faults.join("\n"), @"
     the plan reads /usr/ecko/range, which no module has published within 2 s; did you mean `echo`?
-    help: no module `ecko` is loaded: `mdle run PLAN --module ecko=COMMAND` loads one; `range` is published by `echo`
+    help: no module `ecko` is loaded: `--module ecko=COMMAND` loads one; `range` is published by `echo`
     the plan reads /usr/echo/range, which no module has published within 2 s
     help: a module in the background that needs longer declares its `latency`, and the plan waits 2 s longer than that; if the module publishes only while the robot moves, begin with another plan and `swap` this one in
     the plan reads /usr/nose/age, which no module has published within 2 s
-    help: no module `nose` is loaded: `mdle run PLAN --module nose=COMMAND` loads one
+    help: no module `nose` is loaded: `--module nose=COMMAND` loads one
     ");
 }
 

@@ -100,7 +100,7 @@ fn publishers(read: &ModuleRead, board: &Board) -> String {
     let others =
         if others.is_empty() { String::new() } else { format!("; `{attribute}` is published by {}", listed(&others)) };
     let near = did_you_mean(module, &modules);
-    format!("{near}\nhelp: no module `{module}` is loaded: `mdle run PLAN --module {module}=COMMAND` loads one{others}")
+    format!("{near}\nhelp: no module `{module}` is loaded: `--module {module}=COMMAND` loads one{others}")
 }
 
 /// Returns the values that a running plan reads from modules at time `now`; attributes of unloaded modules have no

@@ -155,6 +155,9 @@ pub(super) fn object(line: &[u8]) -> Result<Map<String, Json>, String> {
         )
     };
     let text = std::str::from_utf8(line).map_err(|_| refused("it is not UTF-8 text".to_owned()))?;
+    if text.trim().is_empty() {
+        return Err(refused("it is empty".to_owned()));
+    }
     let read = serde_json::from_str(text);
     let read = read.or_else(|error| serde_json::from_str(&quoted(text)).map_err(|_| error));
     match read {

@@ -55,7 +55,7 @@ pub fn read(text: &str) -> Result<Rules, RulesError> {
     Ok(reading.rules)
 }
 
-/// Words for the consequences of a rule.
+/// Words for the consequences of a rule; the last one stands for the file of a plan.
 const ALL: [&str; 4] = ["hold", "hold forward", "end", "retreat.mdle"];
 /// Words for the consequences of a rule that cannot divert to another plan.
 const HOLD_OR_END: [&str; 2] = ["hold", "end"];
@@ -143,7 +143,11 @@ impl<'t, 'i> SafetyReader<'t, 'i> {
                 })))
             }
             other => {
-                let words: Vec<_> = words.iter().map(|word| format!("\"{word}\"")).collect();
+                let word = |word: &&str| match word.ends_with(".mdle") {
+                    true => format!("the file of a plan, such as \"{word}\""),
+                    false => format!("\"{word}\""),
+                };
+                let words: Vec<_> = words.iter().map(word).collect();
                 let (last, first) = words
                     .split_last()
                     .map_or((String::new(), String::new()), |(last, first)| (last.clone(), first.join(", ")));

@@ -61,7 +61,8 @@ pub(super) fn command(line: &str, here: &str) -> Result<ShellCommand, String> {
     let Some((_, arguments, _)) = COMMANDS.iter().find(|(known, ..)| *known == name) else {
         let names = COMMANDS.map(|(name, ..)| name);
         let near = mdle_compiler::alphabet::did_you_mean(name, &names);
-        return Err(format!("there is no command `{name}`{near}; `help` lists them"));
+        let help = if near.is_empty() { "; `help` lists them" } else { "" };
+        return Err(format!("there is no command `{name}`{near}{help}"));
     };
     let usage = || match *arguments {
         "" => Err(format!("`{name}` takes no arguments")),
@@ -132,7 +133,7 @@ mod tests {
         let lines = ["fly", "sett x 1", "set", "set x", "get", "get a b", "pause now", "pace", "ls a b", "call"];
         insta::assert_snapshot!(lines.map(|line| command(line, "/").unwrap_err()).join("\n"), @"
         there is no command `fly`; `help` lists them
-        there is no command `sett`; did you mean `set`?; `help` lists them
+        there is no command `sett`; did you mean `set`?
         `set` is used as `set PATH VALUE`
         `set` is used as `set PATH VALUE`
         `get` is used as `get PATH`

@@ -148,7 +148,10 @@ fn number(text: &str) -> Option<f64> {
 
 /// Reads a number with a unit of this quantity, and converts it to `unit`.
 fn quantity_of(text: &str, quantity: Quantity, unit: &str) -> Result<f64, String> {
-    if number(text).is_some() {
+    if let Some(number) = number(text) {
+        if quantity == Quantity::Time && number < 0.0 {
+            return Err(format!("expected a time of at least 0{unit}, found `{text}`"));
+        }
         let smaller = Quantity::of_unit(&format!("c{unit}")).filter(|(other, ..)| *other == quantity);
         let smaller = smaller.map_or_else(String::new, |_| format!("`{text}c{unit}` or "));
         return Err(format!("`{text}` has no unit: write {smaller}`{text}{unit}`"));
@@ -202,6 +205,8 @@ mod tests {
             ("fast", speed),
             ("NaN", speed),
             ("", speed),
+            ("-1", ValueKind::Quantity(Quantity::Time, "s")),
+            ("-1", ValueKind::Quantity(Quantity::Length, "m")),
             ("yes", ValueKind::Flag),
             ("+1", ValueKind::Integer),
             ("1.5", ValueKind::Integer),
@@ -220,6 +225,8 @@ mod tests {
         `fast` is not a number with a unit: expected a speed, such as `5m/s`
         `NaN` is not a number with a unit: expected a speed, such as `5m/s`
         `` is not a number with a unit: expected a speed, such as `5m/s`
+        expected a time of at least 0s, found `-1`
+        `-1` has no unit: write `-1cm` or `-1m`
         expected true or false, found `yes`
         expected a whole number, found `+1`
         expected a whole number, found `1.5`
