@@ -43,6 +43,11 @@ pub(crate) struct Gains {
     /// way. With 0, the robot comes as near to a wall ahead as the look-ahead permits. A wide body has a larger value,
     /// because it must begin earlier to go round a box.
     pub(crate) beyond: f64,
+    /// `goAvoid`: `true` if a remembered echo is an obstacle only while the map has an occupied cell beside it. An
+    /// echo is remembered on the axis of its sonar, up to 20 cm off the object, so that the echoes of both sides of a
+    /// passage 1.2 m wide close it for a wide body. A small body still passes, and it needs the ends of walls, which
+    /// its sonars detect from few directions only.
+    pub(crate) confirms_memory: bool,
     /// `goAvoid`: angle turned since the law began, in radians, from which the robot turns back instead of continuing
     /// in the same direction. On a body with four skidding wheels, odometry has an error of 2 % of each turn, with the
     /// same sign in all turns of a run.
@@ -60,6 +65,7 @@ const RING: Gains = Gains {
     soft_margin: 0.35,
     room_at: 0.6,
     beyond: 0.0,
+    confirms_memory: false,
     winds_most: f64::INFINITY,
 };
 
@@ -74,6 +80,7 @@ const SCOUT: Gains = Gains {
     soft_margin: 0.4,
     room_at: 0.6,
     beyond: 0.0,
+    confirms_memory: false,
     winds_most: f64::INFINITY,
 };
 
@@ -85,6 +92,7 @@ const ATRV: Gains = Gains {
     least_range: 0.0,
     room_at: 0.3,
     beyond: 0.3,
+    confirms_memory: true,
     winds_most: 1.5 * core::f64::consts::PI,
     ..SCOUT
 };

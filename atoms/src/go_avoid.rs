@@ -234,7 +234,7 @@ impl GoingRound {
             return Err(Twist { v, omega: RadiansPerSecond(0.0) });
         }
         let direction = if self.goes_along(t) {
-            let seen = obstacles.remember(&self.memory, here, t);
+            let seen = obstacles.remember(&self.memory, self.narrow.map(), here, t);
             let direction = self.choose(&obstacles, here, t);
             obstacles.forget(seen);
             direction

@@ -275,6 +275,11 @@ impl Map {
         self.evidence(cell) >= OCCUPIED
     }
 
+    /// Returns `true` if the cell or one of the eight cells around it is occupied.
+    pub(crate) fn is_occupied_near(&self, Cell { x, y }: Cell) -> bool {
+        (-1..=1).any(|up| (-1..=1).any(|along| self.is_occupied(Cell { x: x + along, y: y + up })))
+    }
+
     /// Returns the occupied cells.
     pub(crate) fn occupied(&self) -> impl Iterator<Item = Cell> {
         // Most rows have no occupied cell, and most bytes contain two cells that are not occupied.

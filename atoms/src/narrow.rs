@@ -54,6 +54,11 @@ impl Narrow {
         self.map.take(y, here);
     }
 
+    /// Returns the map of the obstacles around the robot.
+    pub(crate) fn map(&self) -> &Map {
+        &self.map
+    }
+
     /// Returns `true` if the robot does not drive but only turns on the spot.
     pub(crate) fn stands(&self) -> bool {
         self.stands.is_some()

@@ -6,6 +6,7 @@ use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
 
 use crate::gains::{Gains, fire_in_turn};
+use crate::map::{Cell, Map};
 use crate::memory::{Memory, PLACES};
 
 /// Number of directions that are tried around the robot, 5° apart.
@@ -154,10 +155,12 @@ impl Obstacles {
         }
     }
 
-    /// Adds the positions that `memory` stores, and returns the number of points before that.
-    pub(crate) fn remember(&mut self, memory: &Memory, here: Pose, now: Nanos) -> usize {
-        let seen = self.count;
-        memory.around(here, now).for_each(|(x, y)| self.push(Point { x, y }));
+    /// Adds the positions that `memory` stores. For a wide body, adds only positions near which `map` has an occupied
+    /// cell. Returns the number of points before the first of these positions.
+    pub(crate) fn remember(&mut self, memory: &Memory, map: &Map, here: Pose, now: Nanos) -> usize {
+        let (seen, is_all) = (self.count, !self.gains.confirms_memory);
+        let counts = |(x, y): &(f64, f64)| is_all || map.is_occupied_near(Cell::of(here.x.0 + x, here.y.0 + y));
+        memory.around(here, now).filter(counts).for_each(|(x, y)| self.push(Point { x, y }));
         seen
     }
 

@@ -1,7 +1,7 @@
 //! Tests the tangent rule: free ways, walls beside a way, and detours around obstacles.
 
 use super::*;
-use crate::trial::Sensed;
+use crate::trial::{Sensed, sized};
 
 fn wish(side: Option<Side>) -> Wish {
     Wish { goal: Radians(0.0), look_ahead: Meters(0.4), previous: None, side, along: false, close: false }
@@ -134,4 +134,32 @@ fn the_ping_before_counts_when_the_newest_heard_nothing() {
     assert!(Obstacles::seen(&y, y.pose).free(Radians(0.0)).0 < 1.0);
     y.ping(SonarId::new(0), None);
     assert_eq!(Obstacles::seen(&y, y.pose).free(Radians(0.0)), Meters(FREE_MOST));
+}
+
+/// Returns the number of positions that this robot remembers after pings of its front sonar, each with the robot's
+/// heading, in degrees, and the range.
+fn remembered(mut y: Sensed, pings: &[(f64, f64)]) -> usize {
+    let (mut memory, mut map) = (Memory::EMPTY, Map::EMPTY);
+    for (heading, range) in pings {
+        y.now = Nanos(y.now.0 + 100_000_000);
+        y.pose.theta = Radians::from_degrees(*heading);
+        y.ping_at(SonarId::new(0), Some(*range), y.now);
+        memory.take(&y);
+        map.take(&y, y.pose);
+    }
+    let mut obstacles = Obstacles::seen(&y, y.pose);
+    let seen = obstacles.remember(&memory, &map, y.pose, y.now);
+    obstacles.count - seen
+}
+
+#[test]
+fn a_wide_body_forgets_positions_that_pings_pass() {
+    let atrv = || Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+    let passes = [(0.0, 0.8), (-3.0, 1.5), (0.0, 1.5), (3.0, 1.5)];
+    assert_eq!(remembered(atrv(), &passes[..1]), 1);
+    assert_eq!(remembered(atrv(), &passes), 0, "the object is elsewhere on the arc of the echo");
+    let often = [passes[0], passes[0], passes[0], passes[2]];
+    assert_eq!(remembered(atrv(), &often), 1, "one ping against three echoes");
+    let scout = Sensed { confirmation: 2, ..Sensed::default() };
+    assert_eq!(remembered(scout, &passes), 1);
 }
