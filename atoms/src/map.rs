@@ -277,7 +277,7 @@ impl Map {
 
     /// Returns `true` if the cell or one of the eight cells around it is occupied.
     pub(crate) fn is_occupied_near(&self, Cell { x, y }: Cell) -> bool {
-        (-1..=1).any(|up| (-1..=1).any(|along| self.is_occupied(Cell { x: x + along, y: y + up })))
+        (0..9).any(|number| self.is_occupied(Cell { x: x + number % 3 - 1, y: y + number / 3 - 1 }))
     }
 
     /// Returns the occupied cells.
