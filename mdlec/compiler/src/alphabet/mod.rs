@@ -4,6 +4,7 @@
 mod checks;
 mod combined;
 mod decimal;
+mod name;
 mod quantity;
 mod read;
 mod synonyms;

@@ -1,6 +1,8 @@
 //! Tokens of an alphabet file. Unlike in a plan, `;` ends a declaration.
 
-use logos::Logos;
+use logos::{Lexer, Logos};
+
+use super::name::name;
 
 /// Kind of a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Logos)]
@@ -11,7 +13,8 @@ pub(super) enum Token {
     #[regex(r"///[^\n]*", allow_greedy = true)]
     Doc,
     /// A name, a keyword or a unit such as `cm/s`.
-    #[regex(r"[\p{L}_][\p{L}\p{Nd}_]*(/[a-z]+)?")]
+    #[regex(r"[A-Za-z_][A-Za-z0-9_]*", with_unit)]
+    #[regex(r"[^\x00-\x7F]", with_unit, priority = 1)]
     Word,
     /// A number, with the unit that directly follows it.
     #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")]
@@ -43,6 +46,15 @@ pub(super) enum Token {
     /// The sign `..`, between the ends of a range.
     #[token("..")]
     To,
+}
+
+/// Reads the rest of a word: its letters outside of ASCII, and the second part of a unit such as `cm/s`.
+fn with_unit(lexer: &mut Lexer<'_, Token>) -> Result<(), ()> {
+    name(lexer)?;
+    let per = lexer.remainder().strip_prefix('/').unwrap_or("");
+    let letters = per.len() - per.trim_start_matches(|c: char| c.is_ascii_lowercase()).len();
+    lexer.bump(if letters > 0 { 1 + letters } else { 0 });
+    Ok(())
 }
 
 impl Token {
