@@ -5,11 +5,13 @@ use std::borrow::Cow;
 
 use logos::{Lexer, Logos};
 
-/// A part of a label. These parts are not in the lexer of plans, because they would make that lexer several times as
-/// large.
+use crate::alphabet::word;
+
+/// A part of a label. These parts are not in the lexer of plans, in which a word does not begin with a digit.
 #[derive(Logos, Debug, Clone, Copy, PartialEq, Eq)]
 enum LabelPart {
-    #[regex(r"[\p{L}\p{M}\p{Nd}_]+")]
+    #[regex(r"[A-Za-z0-9_]+", |lexer| word(lexer).map(drop))]
+    #[regex(r"[^\x00-\x7F]", |lexer| word(lexer).map(drop), priority = 1)]
     Word,
     #[regex(r"\s+")]
     Space,
