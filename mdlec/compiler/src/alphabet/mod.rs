@@ -15,7 +15,7 @@ mod token;
 pub use combined::{Alphabet, combine};
 pub use decimal::Decimal;
 pub use mdle_quantity::{did_you_mean, nearest};
-pub(crate) use name::word;
+pub(crate) use name::{name, word};
 pub use quantity::{ParameterKind, Unit, family_to_si, has_direction};
 pub use read::read;
 

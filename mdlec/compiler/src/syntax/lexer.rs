@@ -34,7 +34,7 @@ pub(super) fn lex(source: FileText<'_>) -> Lexed<'_> {
     };
     let mut lexer = Tok::lexer(source.text);
     while let Some(token) = lexer.next() {
-        let token = token.map(|kind| labelled(kind, &mut lexer));
+        let token = token.map(|kind| word_or_label(kind, &mut lexer));
         let place = TextRange::new(lexer.span().start, lexer.span().end);
         if place.start < reader.skipped || reader.file(token.as_ref().ok(), place) {
             continue;
@@ -53,8 +53,9 @@ pub(super) fn lex(source: FileText<'_>) -> Lexed<'_> {
 }
 
 /// Returns the label that begins with the token `kind`, after consuming the rest of the label. If no label begins
-/// there, returns the token.
-fn labelled<'s>(kind: Tok<'s>, lexer: &mut Lexer<'s, Tok<'s>>) -> Tok<'s> {
+/// there, returns the token, which is a keyword if its text is one.
+fn word_or_label<'s>(kind: Tok<'s>, lexer: &mut Lexer<'s, Tok<'s>>) -> Tok<'s> {
+    let kind = if let Tok::Name(word) = kind { Tok::of_word(word) } else { kind };
     let begins = matches!(kind, Tok::Name(name) if name.starts_with("Γ_") || name.starts_with("Gamma_"))
         || (kind == Tok::Command && lexer.slice() == r"\Gamma");
     let text = lexer.source().get(lexer.span().start..).filter(|_| begins);

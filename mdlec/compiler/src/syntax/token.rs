@@ -4,6 +4,7 @@ use logos::Logos;
 
 use super::scan::{comment, doc, number, string};
 use super::source::TextRange;
+use crate::alphabet::name;
 
 /// A token with its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,39 +21,23 @@ pub(super) struct Token<'s> {
 #[logos(skip(r"\\\\"))]
 #[logos(skip(r"//[^\n]*", allow_greedy = true))]
 pub(super) enum Tok<'s> {
-    #[token("use")]
     Use,
-    #[token("Atom")]
     Atom,
-    #[token("ExecPlan")]
     ExecPlan,
-    #[token("OR")]
-    #[token("or")]
     Or,
-    #[token("AND")]
-    #[token("and")]
     And,
-    #[token("NOT")]
-    #[token("not")]
     Not,
-    #[token("RISING")]
-    #[token("rising")]
     Rising,
-    #[token("null")]
     Null,
-    #[token("module")]
     Module,
-    #[token("after")]
     After,
-    #[token("FRAME")]
     Frame,
     /// The word `here` after `FRAME`; elsewhere it is a name.
     Here,
-    #[token("sigma_null")]
-    #[token("σ_null")]
     #[regex(r"\\sigma_(null|\{\s*null\s*\}|\{\s*\\text\{\s*null\s*\}\s*\})")]
     SigmaNull,
-    #[regex(r"[\p{L}_][\p{L}\p{M}\p{Nd}_]*")]
+    #[regex(r"[A-Za-z_][A-Za-z0-9_]*", name)]
+    #[regex(r"[^\x00-\x7F]", name, priority = 1)]
     Name(&'s str),
     /// `Group` between a plan's brace and a square bracket; anywhere else, it is a name.
     Group,
@@ -63,8 +48,6 @@ pub(super) enum Tok<'s> {
     Label(&'s str),
     #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?", number)]
     Number(&'s str),
-    #[token("inf")]
-    #[token("infinity")]
     #[token("∞")]
     #[token(r"\infty")]
     Infinity,
@@ -124,4 +107,49 @@ pub(super) enum Tok<'s> {
     /// A typesetting command that is not part of MDLe. The parser never receives it.
     #[regex(r"\\[A-Za-z]+", priority = 1)]
     Command,
+}
+
+impl<'s> Tok<'s> {
+    /// Returns the token of a word: a keyword or a name.
+    ///
+    /// The lexer does not recognize keywords, because `ORé` is a name, and the lexer recognizes ASCII letters only.
+    pub(super) fn of_word(word: &'s str) -> Self {
+        match word {
+            "use" => Self::Use,
+            "Atom" => Self::Atom,
+            "ExecPlan" => Self::ExecPlan,
+            "OR" | "or" => Self::Or,
+            "AND" | "and" => Self::And,
+            "NOT" | "not" => Self::Not,
+            "RISING" | "rising" => Self::Rising,
+            "null" => Self::Null,
+            "module" => Self::Module,
+            "after" => Self::After,
+            "FRAME" => Self::Frame,
+            "sigma_null" | "σ_null" => Self::SigmaNull,
+            "inf" | "infinity" => Self::Infinity,
+            name => Self::Name(name),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use logos::Logos;
+
+    use super::Tok;
+
+    #[test]
+    fn a_keyword_that_continues_in_any_script_is_a_name() {
+        for keyword in ["use", "or", "OR", "null", "inf", "FRAME", "sigma_null", "σ_null"] {
+            for behind in ["é", "中", "٣", "\u{301}", "_", "9"] {
+                let text = format!("{keyword}{behind} ≤");
+                let name = format!("{keyword}{behind}");
+                let tokens: Vec<_> = Tok::lexer(&text).collect();
+                assert_eq!(tokens, [Ok(Tok::Name(&name)), Ok(Tok::LessOrEqual)]);
+                assert_eq!(Tok::of_word(&name), Tok::Name(&name));
+            }
+            assert_ne!(Tok::of_word(keyword), Tok::Name(keyword));
+        }
+    }
 }
