@@ -1,0 +1,81 @@
+//! Tests of the map of the obstacles around the robot.
+
+use super::*;
+use crate::trial::Sensed;
+
+const AHEAD: SonarId = SonarId::new(0);
+
+/// Updates the map with the newest pings, of all sonars.
+fn take(map: &mut Map, y: &Sensed) {
+    (0..THIRDS).for_each(|_| map.take(y, y.pose));
+}
+
+/// Returns a map that has been updated with pings straight ahead, 0.1 s apart, and the last output.
+fn heard(ranges: &[Option<f64>], confirmation: usize) -> (Map, Sensed) {
+    let (mut y, mut map) = (Sensed { confirmation, ..Sensed::default() }, Map::EMPTY);
+    for range in ranges {
+        y.now = Nanos(y.now.0 + 100_000_000);
+        y.ping_at(AHEAD, *range, y.now);
+        take(&mut map, &y);
+    }
+    (map, y)
+}
+
+/// Returns `true` if an object is at this distance ahead of the origin.
+fn is_ahead(map: &Map, distance: f64) -> bool {
+    map.is_occupied(Cell::of(distance, 0.0))
+}
+
+#[test]
+fn an_echo_comes_from_its_arc_and_what_is_before_is_free() {
+    let (map, _) = heard(&[Some(0.8)], 3);
+    assert!(is_ahead(&map, 0.99) && !is_ahead(&map, 0.9) && !is_ahead(&map, 1.1));
+    assert!(map.is_occupied(Cell::of(0.19 + 0.8 * 0.98, 0.8 * 0.18)));
+    assert!(!is_unknown(map.evidence(Cell::of(0.6, 0.0))) && is_unknown(map.evidence(Cell::of(1.2, 0.0))));
+}
+
+#[test]
+fn pings_that_pass_clear_a_cell_but_not_one_missed_echo() {
+    assert!(is_ahead(&heard(&[Some(0.8), None], 3).0, 0.99));
+    assert!(!is_ahead(&heard(&[Some(0.8), Some(1.2)], 3).0, 0.99));
+    assert!(!is_ahead(&heard(&[Some(0.8), None, None], 3).0, 0.99));
+    let often = [Some(0.8); 4];
+    let (map, mut y) = heard(&often, 3);
+    let mut map = map;
+    y.now = Nanos(y.now.0 + 1);
+    y.ping_at(AHEAD, Some(1.2), y.now);
+    take(&mut map, &y);
+    assert!(is_ahead(&map, 0.99), "one ping against four");
+}
+
+#[test]
+fn an_echo_that_something_known_explains_adds_nothing_else() {
+    let (mut map, mut y) = heard(&[], 3);
+    map.occupy((0.97, 0.15), (0.97, 0.15));
+    y.now = Nanos(1);
+    y.ping_at(AHEAD, Some(0.8), y.now);
+    take(&mut map, &y);
+    assert!(!is_ahead(&map, 0.99));
+}
+
+#[test]
+fn an_echo_at_the_least_range_may_be_nearer() {
+    let (map, _) = heard(&[Some(0.1524)], 2);
+    assert!(is_ahead(&map, 0.19 + INSTEAD) && !is_ahead(&map, 0.19 + 0.1524));
+    let (map, _) = heard(&[Some(0.1524)], 3);
+    assert!(is_ahead(&map, 0.19 + 0.1524), "full rings hear how near it is");
+}
+
+#[test]
+fn the_map_moves_with_the_robot_and_forgets_what_is_far() {
+    let (mut map, mut y) = heard(&[Some(0.8)], 3);
+    y.pose.x = Meters(1.0);
+    take(&mut map, &y);
+    assert!(is_ahead(&map, 0.99));
+    for x in [9.0, 0.0] {
+        y.pose.x = Meters(x);
+        take(&mut map, &y);
+    }
+    assert!(!is_ahead(&map, 0.99));
+    assert_eq!(map.around(y.pose, Meters(1.2)).count(), 0);
+}
