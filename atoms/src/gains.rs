@@ -31,6 +31,10 @@ pub(crate) struct Gains {
     /// `goAvoid`: range, in metres, below which an obstacle may be nearer than its range. A Scout reports 6 inches for
     /// every nearer obstacle, so that a wall towards which it drifts seems to be parallel to its way.
     pub(crate) least_range: f64,
+    /// `goAvoid`: range, in metres, below which an echo may have the minimum range of its transducer. Such echoes show
+    /// neither how near a wall is nor which part of it is nearest. An ATRV-mini's transducers have a minimum range of 6
+    /// inches and are not on its ring, from which these echoes therefore have ranges of up to 17.2 cm.
+    pub(crate) saturates: f64,
     /// `goAvoid`: distance to keep around the body where there is room, in metres. Where sonars fire in turn,
     /// odometry drifts too, so the robot must keep to the middle of a hallway by its ranges.
     pub(crate) soft_margin: f64,
@@ -62,6 +66,7 @@ const RING: Gains = Gains {
     look_ahead: Meters(0.4),
     hard_margin: 0.06,
     least_range: 0.0,
+    saturates: 0.0,
     soft_margin: 0.35,
     room_at: 0.6,
     beyond: 0.0,
@@ -77,6 +82,7 @@ const SCOUT: Gains = Gains {
     look_ahead: Meters(0.5),
     hard_margin: 0.04,
     least_range: 0.16,
+    saturates: 0.0,
     soft_margin: 0.4,
     room_at: 0.6,
     beyond: 0.0,
@@ -90,6 +96,7 @@ const ATRV: Gains = Gains {
     look_ahead: Meters(0.5),
     hard_margin: 0.06,
     least_range: 0.0,
+    saturates: 0.175,
     room_at: 0.3,
     beyond: 0.3,
     confirms_memory: true,

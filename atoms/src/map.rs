@@ -112,7 +112,7 @@ impl Map {
     /// every turn, each sonar is read in every third turn, which is about as often as a sonar that fires in turn pings.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
         self.move_to(here);
-        let least = Gains::of(y).least_range;
+        let Gains { least_range: least, saturates, .. } = *Gains::of(y);
         let thirds = if fire_in_turn(y) { 1 } else { THIRDS };
         let third = self.third % thirds;
         self.third = (third + 1) % thirds;
@@ -133,9 +133,9 @@ impl Map {
             }
             if ping.range.is_some() && range < WITHIN {
                 if range >= least {
-                    self.hit(from, axis, range);
+                    self.hit(from, axis, range, range < saturates);
                 } else if !self.explains(from, axis, least) {
-                    self.hit(from, axis, INSTEAD);
+                    self.hit(from, axis, INSTEAD, false);
                 }
             }
         }
@@ -187,7 +187,11 @@ impl Map {
 
     /// Records an echo. If a cell on the echo's arc is occupied, the evidence of the cells with the most evidence is
     /// increased; otherwise all cells on the arc become occupied.
-    fn hit(&mut self, from: Pose, axis: Radians, range: f64) {
+    ///
+    /// If `is_saturated` is `true`, all cells on the arc become occupied in any case. Such an echo repeats while the
+    /// robot drives along a wall that approaches its front corner, and the occupied cells that the arc still contains
+    /// would hide the part of the wall ahead of them.
+    fn hit(&mut self, from: Pose, axis: Radians, range: f64, is_saturated: bool) {
         let cells = ARC.map(|degrees| {
             let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
             Cell::of(from.x.0 + range * cos, from.y.0 + range * sin)
@@ -195,6 +199,7 @@ impl Map {
         let most = cells.iter().map(|cell| self.evidence(*cell)).max().unwrap_or(UNKNOWN);
         let is_known = most >= OCCUPIED;
         self.once(cells.into_iter(), |evidence| match is_known {
+            _ if is_saturated => evidence.max(OCCUPIED),
             true if evidence + 2 >= most => (evidence + HIT).min(MOST),
             true => evidence,
             false => OCCUPIED,

@@ -1,7 +1,7 @@
 //! Tests of the map of the obstacles around the robot.
 
 use super::*;
-use crate::trial::Sensed;
+use crate::trial::{Sensed, sized};
 
 const AHEAD: SonarId = SonarId::new(0);
 
@@ -56,6 +56,20 @@ fn an_echo_that_something_known_explains_adds_nothing_else() {
     y.ping_at(AHEAD, Some(0.8), y.now);
     take(&mut map, &y);
     assert!(!is_ahead(&map, 0.99));
+}
+
+#[test]
+fn a_saturated_echo_of_a_wide_body_comes_from_its_whole_arc() {
+    let hides = |range: f64| {
+        let (mut y, mut map) = (Sensed { confirmation: 2, ..sized(0.315, 0.27) }, Map::EMPTY);
+        map.occupy((0.19 + range, 0.02), (0.19 + range, 0.02));
+        y.now = Nanos(1);
+        y.ping_at(AHEAD, Some(range), y.now);
+        take(&mut map, &y);
+        !map.is_occupied(Cell::of(0.19 + range, -0.02))
+    };
+    assert!(!hides(0.15));
+    assert!(hides(0.2), "the range shows which cell the echo came from");
 }
 
 #[test]
