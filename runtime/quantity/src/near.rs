@@ -7,7 +7,13 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&
     let distance = |other: &str| strsim::damerau_levenshtein(&lower, &other.to_lowercase());
     let length = name.chars().count();
     let allowed = (length / 3).max(1).min(length.saturating_sub(1));
-    names.map(|other| (distance(other), other)).filter(|(found, _)| *found <= allowed).min().map(|(_, other)| other)
+    let near = names.map(|other| (distance(other), other)).filter(|(found, _)| *found <= allowed);
+    // Of names at the same distance, one that has all the letters of `name` in order is meant rather than another.
+    let likeness = |other: &str| strsim::jaro_winkler(&lower, &other.to_lowercase());
+    let order = |(one, this): &(usize, &str), (two, that): &(usize, &str)| {
+        one.cmp(two).then_with(|| likeness(that).total_cmp(&likeness(this))).then_with(|| this.cmp(that))
+    };
+    near.min_by(order).map(|(_, other)| other)
 }
 
 /// Returns the end of a sentence about an unknown name. It suggests the name in `known` that is similar, or is empty if
@@ -27,6 +33,8 @@ mod tests {
         let known = ["odom", "cmd-vel", "scan"];
         assert_eq!(did_you_mean("cmd_vel", &known), "; did you mean `cmd-vel`?");
         assert_eq!(did_you_mean("ODOM", &known), "; did you mean `odom`?");
+        assert_eq!(nearest("bild", ["bind", "build"].into_iter()), Some("build"));
+        assert_eq!(nearest("bint", ["bind", "build", "bits"].into_iter()), Some("bind"));
         assert_eq!([did_you_mean("battery", &known), did_you_mean("x", &known)], ["", ""]);
     }
 }
