@@ -4,13 +4,20 @@
 use std::io::{ErrorKind, Write};
 
 use clap::error::{ContextKind, ContextValue};
+use mdle_quantity::nearest;
 use mdle_runtime::PrintableLines;
 
 use crate::run_end::{self, say};
 
-/// Prints the help text or the error in the arguments; returns the exit status.
-pub(crate) fn unparsed<'o>(error: clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, err: &mut dyn Write) -> u8 {
-    let error = with_near_option(error);
+/// Prints the help text or the error in the arguments; returns the exit status. `others` are the options that the
+/// program has parsed itself.
+pub(crate) fn unparsed<'o>(
+    error: clap::Error,
+    others: &[String],
+    out: impl FnOnce() -> Box<dyn Write + 'o>,
+    err: &mut dyn Write,
+) -> u8 {
+    let error = with_near_option(error, others);
     if error.use_stderr() {
         say(err, format_args!("{}", error.render().to_string().trim_end()));
         return run_end::USAGE;
@@ -30,17 +37,26 @@ pub(crate) fn print_answer(answer: &str, out: &mut dyn Write, err: &mut dyn Writ
     }
 }
 
-/// Removes clap's suggestion for an unknown option if more than a third of the characters differ. For example,
-/// `--period` would be a useless suggestion for `--speed`, an option that only simulated robots have.
-fn with_near_option(mut error: clap::Error) -> clap::Error {
+/// Replaces clap's suggestion for an unknown option if an option of `others` is nearer. Removes it if more than a third
+/// of the characters differ. For example, `--period` would be a useless suggestion for `--speed`, an option that only
+/// simulated robots have.
+fn with_near_option(mut error: clap::Error, others: &[String]) -> clap::Error {
     let text = |kind| match error.get(kind) {
-        Some(ContextValue::String(text)) => text.trim_start_matches('-').split('=').next().unwrap_or_default(),
-        Some(_) | None => "",
+        Some(ContextValue::String(text)) => text.split('=').next().and_then(|name| name.strip_prefix("--")),
+        Some(_) | None => None,
     };
-    let (given, proposed) = (text(ContextKind::InvalidArg), text(ContextKind::SuggestedArg));
-    if !proposed.is_empty() && strsim::damerau_levenshtein(given, proposed) > (given.chars().count() / 3).max(1) {
-        let _ = error.remove(ContextKind::SuggestedArg);
-        let _ = error.remove(ContextKind::Usage);
+    let is_unknown = error.kind() == clap::error::ErrorKind::UnknownArgument;
+    let Some(given) = text(ContextKind::InvalidArg).filter(|_| is_unknown) else { return error };
+    let proposed = text(ContextKind::SuggestedArg);
+    let near = nearest(given, others.iter().filter_map(|other| other.strip_prefix("--")).chain(proposed));
+    if near == proposed {
+        return error;
+    }
+    let near = near.map(|near| ContextValue::String(format!("--{near}")));
+    let _ = error.remove(ContextKind::Usage);
+    let _ = error.remove(ContextKind::SuggestedArg);
+    if let Some(near) = near {
+        let _ = error.insert(ContextKind::SuggestedArg, near);
     }
     error
 }

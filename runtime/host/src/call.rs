@@ -19,6 +19,9 @@ pub struct Call {
     pub recorded: RecordedPlan,
     /// Name of a path that the run itself records; the path's file need not exist when the run starts.
     pub later_path: Option<String>,
+    /// Long options that the program has parsed itself, with their dashes. One of them is proposed for an unknown
+    /// option that resembles it.
+    pub own_options: Vec<String>,
 }
 
 /// Data about a plan that a record contains. Parts that the program does not know are empty.
@@ -47,6 +50,7 @@ impl Call {
             read: Vec::new(),
             recorded: RecordedPlan::default(),
             later_path: None,
+            own_options: Vec::new(),
         }
     }
 
@@ -122,6 +126,7 @@ mod tests {
             read: Vec::new(),
             recorded: RecordedPlan { settings, ..RecordedPlan::default() },
             later_path: None,
+            own_options: Vec::new(),
         };
         assert_eq!(call.repeating("P"), "mdle run 'a b' --module 'a=b c' --seed 7 --logs");
     }
@@ -134,6 +139,7 @@ mod tests {
             read: Vec::new(),
             recorded: RecordedPlan::default(),
             later_path: None,
+            own_options: Vec::new(),
         };
         assert_eq!(call(&["./it's"]).command("P"), r"'./it'\''s'");
         assert_eq!(call(&["mdle", "run", "a b.mdle"]).command("P"), "mdle run 'a b.mdle'");

@@ -36,7 +36,7 @@ where
     let target = executable.target();
     let matches = match arguments::command(&target, program, &call).try_get_matches_from(call.arguments()) {
         Ok(matches) => matches,
-        Err(error) => return unparsed(error, surroundings.out, surroundings.err),
+        Err(error) => return unparsed(error, &call.own_options, surroundings.out, surroundings.err),
     };
     let options = arguments::options(&target, &matches);
     match shielded(|| (target.answer)(&matches)).unwrap_or_else(bug_before) {

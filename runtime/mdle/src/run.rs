@@ -102,7 +102,14 @@ pub(crate) fn run_files(
     let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).chain(linked_by);
     let read = read.collect();
     drop(input);
-    let call = Call { words: arguments.words, options, read, recorded, later_path: arguments.records };
+    let call = Call {
+        words: arguments.words,
+        options,
+        read,
+        recorded,
+        later_path: arguments.records,
+        own_options: Vec::new(),
+    };
     if lacks_heading && (linked.check)(program, &call).is_ok() {
         let help = "`--ears robot` loads one that hears sounds, and `--point X,Y` one that knows a point";
         failure::warning(&format!("the plan reads the module `{HEADING}`, and none is loaded\nhelp: {help}"));
@@ -138,7 +145,14 @@ fn saved(map: &MapRun, status: ExitCode) -> ExitCode {
 /// Returns a call without arguments.
 fn no_call() -> Call {
     let recorded = RecordedPlan::default();
-    Call { words: Vec::new(), options: Vec::new(), read: Vec::new(), recorded, later_path: None }
+    Call {
+        words: Vec::new(),
+        options: Vec::new(),
+        read: Vec::new(),
+        recorded,
+        later_path: None,
+        own_options: Vec::new(),
+    }
 }
 
 impl RunArguments {

@@ -128,7 +128,14 @@ fn turns(work: Duration) {
     };
     let words = env::args_os().take(1).collect();
     let options = env::args_os().skip(1).collect();
-    let call = Call { words, options, read: Vec::new(), recorded: RecordedPlan::default(), later_path: None };
+    let call = Call {
+        words,
+        options,
+        read: Vec::new(),
+        recorded: RecordedPlan::default(),
+        later_path: None,
+        own_options: Vec::new(),
+    };
     run_piloted::<Stopwatch, _>("rest", call, &|| Rest, pilot, None);
 }
 

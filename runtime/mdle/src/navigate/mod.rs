@@ -86,7 +86,14 @@ fn lonely(maps: &[LandmarkMap]) -> Option<String> {
 
 fn call(arguments: &Navigate, options: Vec<OsString>) -> Call {
     let recorded = RecordedPlan::default();
-    Call { words: arguments.words.clone(), options, read: Vec::new(), recorded, later_path: None }
+    Call {
+        words: arguments.words.clone(),
+        options,
+        read: Vec::new(),
+        recorded,
+        later_path: None,
+        own_options: Vec::new(),
+    }
 }
 
 /// Finds the route that leads from each landmark to the next.

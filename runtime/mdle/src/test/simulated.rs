@@ -75,6 +75,7 @@ impl Simulation {
             read: Vec::new(),
             recorded: RecordedPlan::default(),
             later_path: None,
+            own_options: Vec::new(),
         };
         let plan = loaded.plan();
         let program = Program { plan: plan.name(0), version: "" };
