@@ -45,6 +45,8 @@ fn failures_to_run_have_a_help() {
         "run bad.mdle --target sim",
         "run --world office plan.mdle",
         "run plan.mdle --target sim --wrold office",
+        "run plan.mdle --target sim --pont 1,2",
+        "run plan.mdle --target sim --comands a.txt",
         "run plan.mdle --target sim --world moon",
         "run plan.mdle --target sim --turns 0",
         "run plan.mdle --target sim --log plan.mdle",

@@ -145,12 +145,25 @@ const WITH_VALUE: [&str; 15] = [
 ];
 /// Options that `mdle navigate` itself parses.
 const OF_ROUTES: [&str; 2] = ["--landmarks", "--target"];
+/// Arguments that an executable with the engine does not take, because it contains their values.
+const NOT_IN_EXECUTABLES: [&str; 4] = ["file", "target", "plan", "deny-warnings"];
 /// Options that request help.
 const HELP: [&str; 2] = ["-h", "--help"];
 /// Options that request the version of an executable.
 const VERSION: [&str; 2] = ["-V", "--version"];
 /// Options that `mdle` itself parses and that have no value.
 const FLAGS: [&str; 4] = ["--deny-warnings", "-e", "-x", "--paused"];
+
+/// Returns the long options, with their dashes, that `mdle run` or `mdle shell` parses itself, or an executable that
+/// contains the engine.
+pub(crate) fn own_options(in_session: bool, in_executable: bool) -> Vec<String> {
+    let command = if in_session { shell() } else { run() };
+    let options = command.get_arguments().filter_map(|option| option.get_long());
+    options
+        .filter(|name| !(in_executable && NOT_IN_EXECUTABLES.contains(name)))
+        .map(|name| format!("--{name}"))
+        .collect()
+}
 
 /// Parses the arguments of the process, which begin with the program's own name.
 ///
@@ -277,8 +290,8 @@ pub(crate) fn help_of_executables(options: &[OsString]) -> Option<String> {
     if !options.iter().any(|option| HELP.iter().any(|help| option == help)) {
         return None;
     }
-    let hidden = ["file", "target", "plan", "deny-warnings"];
-    let command = hidden.into_iter().fold(run(), |command, name| command.mut_arg(name, |arg| arg.hide(true)));
+    let command =
+        NOT_IN_EXECUTABLES.into_iter().fold(run(), |command, name| command.mut_arg(name, |arg| arg.hide(true)));
     let mut command = command.disable_help_flag(true).help_template("Options of the engine:\n{options}\n\n");
     Some(command.render_help().to_string())
 }

@@ -10,7 +10,7 @@ use mdle_files::{Input, InputError, KnownSettings, SafetyEntry, Settings, Target
 use mdle_host::{Call, Program, RecordedPlan};
 use mdle_runtime::Sensed;
 
-use crate::arguments::{MapOption, RunArguments};
+use crate::arguments::{self, MapOption, RunArguments};
 use crate::evidence::{MapFiles, pose};
 use crate::failure::{self, Failure};
 use crate::input_files::InputFiles;
@@ -101,15 +101,9 @@ pub(crate) fn run_files(
     }
     let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).chain(linked_by);
     let read = read.collect();
+    let own_options = arguments::own_options(arguments.session.is_some(), !version.is_empty());
     drop(input);
-    let call = Call {
-        words: arguments.words,
-        options,
-        read,
-        recorded,
-        later_path: arguments.records,
-        own_options: Vec::new(),
-    };
+    let call = Call { words: arguments.words, options, read, recorded, later_path: arguments.records, own_options };
     if lacks_heading && (linked.check)(program, &call).is_ok() {
         let help = "`--ears robot` loads one that hears sounds, and `--point X,Y` one that knows a point";
         failure::warning(&format!("the plan reads the module `{HEADING}`, and none is loaded\nhelp: {help}"));
