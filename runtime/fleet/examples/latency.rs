@@ -20,9 +20,10 @@ const LOOK: Duration = Duration::from_micros(100);
 /// Time in which the robots connect, before latencies are measured.
 const WARM_UP: Duration = Duration::from_secs(5);
 
-/// Returns the system time in seconds since the Unix epoch.
+/// Returns the system time in seconds of the current day. States carry it as a position, and a link refuses positions
+/// that are more than a million metres away, as the seconds since the Unix epoch would be.
 fn clock() -> f64 {
-    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |time| time.as_secs_f64())
+    SystemTime::now().duration_since(UNIX_EPOCH).map_or(0.0, |time| time.as_secs_f64() % 86_400.0)
 }
 
 fn opened(kind: &str, number: usize, count: usize, port: u16) -> Result<Box<dyn Link>, Box<dyn Error>> {
@@ -53,7 +54,14 @@ impl Heard {
         (*last, *count) = (state.number, *count + 1);
     }
 
-    fn print(mut self, kind: &str) {
+    /// Prints the latencies.
+    ///
+    /// # Errors
+    /// Fails if no state has arrived.
+    fn print(mut self, kind: &str) -> Result<(), Box<dyn Error>> {
+        if self.latencies.is_empty() {
+            return Err(format!("{kind}: no state has arrived").into());
+        }
         self.latencies.sort_by(f64::total_cmp);
         let sent: u64 = self.robots.values().map(|(first, last, _)| last - first + 1).sum();
         let at =
@@ -66,6 +74,7 @@ impl Heard {
             self.latencies.len(),
             self.robots.len()
         );
+        Ok(())
     }
 }
 
@@ -97,7 +106,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         sleep(if number == 0 { LOOK } else { next.saturating_duration_since(Instant::now()) });
     }
     if number == 0 {
-        heard.print(kind);
+        heard.print(kind)?;
     }
     Ok(())
 }

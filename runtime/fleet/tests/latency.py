@@ -13,9 +13,9 @@ from harness import Router
 ROBOTS, SECONDS, ROUNDS = 16, 20, 3
 
 
-def measured(example, kind, port):
+def measured(example, kind, port, robots=ROBOTS, seconds=SECONDS):
     """What the first robot prints."""
-    words = [[example, kind, number, ROBOTS, port, SECONDS] for number in range(ROBOTS)]
+    words = [[example, kind, number, robots, port, seconds] for number in range(robots)]
     fleet = [subprocess.Popen(list(map(str, line)), stdout=subprocess.PIPE, text=True) for line in words]
     outputs = [robot.communicate()[0] for robot in fleet]
     assert all(robot.returncode == 0 for robot in fleet)
