@@ -250,7 +250,7 @@ fn a_plan_that_waits_in_vain_names_the_modules() {
     the plan reads /usr/ecko/range, which no module has published within 2 s; did you mean `echo`?
     help: no module `ecko` is loaded: `--module ecko=COMMAND` loads one; `range` is published by `echo`
     the plan reads /usr/echo/range, which no module has published within 2 s
-    help: a module in the background that needs longer declares its `latency`, and the plan waits 2 s longer than that; if the module publishes only while the robot moves, begin with another plan and `swap` this one in
+    help: a module in the background that needs longer declares its `latency`, and the plan waits 2 s longer than that; if the module publishes only while the robot moves, or only what it hears or sees, begin with another plan and `swap` this one in
     the plan reads /usr/nose/age, which no module has published within 2 s
     help: no module `nose` is loaded: `--module nose=COMMAND` loads one
     ");

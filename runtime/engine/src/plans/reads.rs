@@ -56,7 +56,8 @@ pub(super) fn in_vain(missing: &[&ModuleRead], board: &Board) -> String {
         return format!(
             "the plan reads {paths}, which no module has published within {seconds} s\nhelp: a module in the \
              background that needs longer declares its `latency`, and the plan waits 2 s longer than that; if the \
-             module publishes only while the robot moves, begin with another plan and `swap` this one in"
+             module publishes only while the robot moves, or only what it hears or sees, begin with another plan and \
+             `swap` this one in"
         );
     }
     let absent = missing.iter().find(|read| board.place_of(read).is_none());

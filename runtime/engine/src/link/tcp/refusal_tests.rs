@@ -168,7 +168,10 @@ fn a_peer_with_another_key_causes_few_messages() {
     messages.sort();
     assert_eq!(messages.len(), 2, "{messages:?}");
     assert!(messages[0].contains("127.0.0.1 is refused: it has another key"), "{messages:?}");
-    assert!(messages[1].contains("ada at 127.0.0.1:") && messages[1].contains("cannot be reached"), "{messages:?}");
+    assert!(
+        messages[1].contains("ada at 127.0.0.1:") && messages[1].contains("refuses this one and says why"),
+        "{messages:?}"
+    );
 }
 
 #[test]

@@ -56,7 +56,7 @@ fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &End
                 outbox.open();
                 let failure = sender.send(connection);
                 outbox.close();
-                failure.to_string()
+                reason(&failure)
             }
             Err(failure) => failure,
         };
@@ -66,6 +66,19 @@ fn keep_sending(name: &str, address: SocketAddr, outbox: &Outbox, endpoint: &End
         }
         thread::sleep(AGAIN.saturating_sub(begun.elapsed()));
     }
+}
+
+/// Returns why a connection ended, as the end of a sentence. A peer closes the connection both when it ends and when it
+/// refuses this robot.
+fn reason(failure: &io::Error) -> String {
+    use io::ErrorKind::{BrokenPipe, ConnectionAborted, ConnectionReset};
+
+    if ![BrokenPipe, ConnectionAborted, ConnectionReset].contains(&failure.kind()) {
+        return failure.to_string();
+    }
+    "it has closed the connection, as a robot does that has ended, or that refuses this one and says why in its own \
+     warnings"
+        .to_owned()
 }
 
 /// Connects to a peer, and receives the peer's challenge.
