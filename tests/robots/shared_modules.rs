@@ -136,6 +136,8 @@ fn a_plan_that_does_not_check_changes_nothing() {
         ),
         ("{ Go (wait 2s) (Atom (null) path(way)) }", "the plan replays the path `way`"),
         ("{ Go (null) (Atom (null) (go 20 0)) }", "the plan never ends"),
+        ("{ Go (null) ExecPlan inf { (Atom (wait 1) (go 20 0)) } }", "the plan never ends"),
+        ("{ Go (wait inf) ExecPlan inf { (Atom (wait 1) (go 20 0)) } }", "the plan never ends"),
         ("{ Go (range(none module) > 1m) (Atom (null) stop) }", "/usr/none/range"),
         ("{ Go (wait 2s) (Atom (rendezvous eve) stop) }", "the plan names the robot `eve`"),
         (&doubled, "atoms, scopes and loops once every plan by name is copied in; the limit is 10000"),

@@ -81,9 +81,13 @@ fn compiled<A: EngineAlphabet>(
     if let Err(count) = judged(&diagnostics, false) {
         return Err(faulty(&count, &warnings));
     }
-    // A warning that a sent plan never ends counts as an error, because nobody at this robot reads it.
-    if is_sent && diagnostics.iter().any(|diagnostic| diagnostic.code == Code::W0201) {
-        return Err(format!("the plan never ends, and nothing has changed\n{}", warnings.trim_end()));
+    // For a sent plan, a warning that it never ends counts as an error, because nobody at this robot reads it. The
+    // analysis also finds plans without such a warning, as an endless loop is assumed to be intended.
+    let is_endless = |machine: &Machine| analyze(machine).shortest.is_none();
+    let is_warned = diagnostics.iter().any(|diagnostic| diagnostic.code == Code::W0201);
+    if is_sent && (is_warned || machines.iter().any(|compiled| is_endless(&compiled.machine))) {
+        let help = "help: give the plan a condition that ends it, as in `{ Name (wait 10min) … }`";
+        return Err(format!("the plan never ends, and nothing has changed\n{warnings}{help}"));
     }
     let machines = machines.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
     let machines: Vec<_> = machines.collect();
