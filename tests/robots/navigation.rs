@@ -95,6 +95,16 @@ fn a_place_that_a_turning_robot_mishears_is_no_landmark() {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
 }
 
+/// This Scout turned at a place where no heading showed it the pattern 0010. Without a timer, the turn never ended.
+#[test]
+fn a_turn_that_hears_no_pattern_ends() {
+    let words = ["office", "lab2", "--body", "scout", "--start", "11.5,0,270", "--start-noise", "10cm,5deg"];
+    let goal = ["--seed", "9998021", "--timeout", "400", "--goal", "0,0,0.45,0,15"];
+    let output = navigate(&folder("navigation_turns"), &[&words[..], &goal].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    assert!(text(&output).contains("of \"atIsection 0010 OR wait 30\""), "{}", text(&output));
+}
+
 /// Returns a folder for a test with the repository's graph and with maps of its landmarks, which a Scout makes once for
 /// all tests.
 fn mapped(test: &str) -> PathBuf {

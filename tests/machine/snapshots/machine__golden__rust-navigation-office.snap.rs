@@ -136,13 +136,13 @@ mod machine {
         Idle,
         /// `(Atom (atIsection 0100) goAvoid 90 40 20)`
         Atom1(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0010) go 0 0.36)`
+        /// `(Atom (atIsection 0010 OR wait 30) go 0 0.36)`
         Atom2(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait inf) align 7 9)`
         Atom3(<robot::Align as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 1000) goAvoid 0 40 20)`
         Atom4(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0100) go 0 0.36)`
+        /// `(Atom (atIsection 0100 OR wait 30) go 0 0.36)`
         Atom5(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait inf) align 3 5)`
         Atom6(<robot::Align as runtime::Control<Output>>::Law),
@@ -154,7 +154,7 @@ mod machine {
         Atom9(<robot::Rotate as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (atIsection 1001) goAvoid 90 40 20)`
         Atom10(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 0011) go 0 0.36)`
+        /// `FRAME 180deg (Atom (atIsection 0011 OR wait 30) go 0 0.36)`
         Atom11(<robot::Go as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (wait inf) align 11 13)`
         Atom12(<robot::Align as runtime::Control<Output>>::Law),
@@ -176,13 +176,13 @@ mod machine {
         Atom20(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (atIsection 0001) goAvoid 270 40 20)`
         Atom21(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 0010) go 0 0.36)`
+        /// `FRAME 180deg (Atom (atIsection 0010 OR wait 30) go 0 0.36)`
         Atom22(<robot::Go as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (wait 10) align 7 9)`
         Atom23(<robot::Align as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (atIsection 1000) goAvoid 0 40 20)`
         Atom24(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (atIsection 0001) go 0 0.36)`
+        /// `FRAME 180deg (Atom (atIsection 0001 OR wait 30) go 0 0.36)`
         Atom25(<robot::Go as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (wait 10) align 11 13)`
         Atom26(<robot::Align as runtime::Control<Output>>::Law),
@@ -194,13 +194,13 @@ mod machine {
         Atom29(<robot::Rotate as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0100) goAvoid 90 40 20)`
         Atom30(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0010) go 0 0.36)`
+        /// `(Atom (atIsection 0010 OR wait 30) go 0 0.36)`
         Atom31(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait 10) align 7 9)`
         Atom32(<robot::Align as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 1000) goAvoid 0 40 20)`
         Atom33(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0100) go 0 0.36)`
+        /// `(Atom (atIsection 0100 OR wait 30) go 0 0.36)`
         Atom34(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait 10) align 3 5)`
         Atom35(<robot::Align as runtime::Control<Output>>::Law),
@@ -210,7 +210,7 @@ mod machine {
         Atom37(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 1001) goAvoid 270 40 20)`
         Atom38(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `(Atom (atIsection 0011) go 0 0.36)`
+        /// `(Atom (atIsection 0011 OR wait 30) go 0 0.36)`
         Atom39(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait 10) align 11 13)`
         Atom40(<robot::Align as runtime::Control<Output>>::Law),
@@ -228,13 +228,13 @@ mod machine {
         Atom46(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (atIsection 0001) goAvoid 180 40 20)`
         Atom47(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (atIsection 0010) go 0 0.36)`
+        /// `FRAME 270deg (Atom (atIsection 0010 OR wait 30) go 0 0.36)`
         Atom48(<robot::Go as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (wait 10) align 7 9)`
         Atom49(<robot::Align as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (atIsection 1000) goAvoid 270 40 20)`
         Atom50(<robot::GoAvoid as runtime::Control<Output>>::Law),
-        /// `FRAME 270deg (Atom (atIsection 0001) go 0 0.36)`
+        /// `FRAME 270deg (Atom (atIsection 0001 OR wait 30) go 0 0.36)`
         Atom51(<robot::Go as runtime::Control<Output>>::Law),
         /// `FRAME 270deg (Atom (wait 10) align 11 13)`
         Atom52(<robot::Align as runtime::Control<Output>>::Law),
@@ -703,7 +703,9 @@ mod machine {
                     }
                 }
                 Running::Atom2(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(2, 2, 3)),
@@ -733,7 +735,9 @@ mod machine {
                     }
                 }
                 Running::Atom5(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(5, 2, 3)),
@@ -805,7 +809,9 @@ mod machine {
                     }
                 }
                 Running::Atom11(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0011, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(11, 2, 3)),
@@ -949,7 +955,9 @@ mod machine {
                     }
                 }
                 Running::Atom22(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(22, 2, 3)),
@@ -985,7 +993,9 @@ mod machine {
                     }
                 }
                 Running::Atom25(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(25, 2, 3)),
@@ -1063,7 +1073,9 @@ mod machine {
                     }
                 }
                 Running::Atom31(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(31, 2, 3)),
@@ -1099,7 +1111,9 @@ mod machine {
                     }
                 }
                 Running::Atom34(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(34, 2, 3)),
@@ -1163,7 +1177,9 @@ mod machine {
                     }
                 }
                 Running::Atom39(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0011, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(39, 2, 3)),
@@ -1285,7 +1301,9 @@ mod machine {
                     }
                 }
                 Running::Atom48(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(48, 2, 3)),
@@ -1321,7 +1339,9 @@ mod machine {
                     }
                 }
                 Running::Atom51(_) => {
-                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y) {
+                    if runtime::Interrupt::fired(&AT_ISECTION_0001, y)
+                        | (cursor.since(2u16, t) >= Nanos(30000000000))
+                    {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(51, 2, 3)),
@@ -1493,51 +1513,39 @@ mod machine {
                     robot::AtIsection::new(runtime::Bits([false, true, false, false])),
                 ),
             ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
-                ),
-            ),
-            runtime::Condition::Null,
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([true, false, false, false])),
-                ),
-            ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
-                ),
-            ),
-            runtime::Condition::Null,
-            runtime::Condition::Wait(Nanos(7000000000)),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([true, false, false, false])),
-                ),
-            ),
-            runtime::Condition::Null,
-            runtime::Condition::Wait(Nanos(10000000000)),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([true, false, false, true])),
-                ),
-            ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, false, true, true])),
-                ),
-            ),
-            runtime::Condition::Null,
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
-                ),
-            ),
-            runtime::Condition::Wait(Nanos(10000000000)),
-            runtime::Condition::Null,
-            runtime::Condition::Wait(Nanos(5000000000)),
             runtime::Condition::Or(0, 2),
+            runtime::Condition::Null,
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, false])),
+                ),
+            ),
+            runtime::Condition::Or(2, 2),
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(7000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, false])),
+                ),
+            ),
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(10000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, true])),
+                ),
+            ),
+            runtime::Condition::Or(4, 2),
+            runtime::Condition::Null,
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(10000000000)),
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(5000000000)),
+            runtime::Condition::Or(6, 2),
             runtime::Condition::Wait(Nanos(3000000000)),
             runtime::Condition::Wait(Nanos(3000000000)),
             runtime::Condition::Wait(Nanos(10000000000)),
@@ -1548,22 +1556,14 @@ mod machine {
                     robot::AtIsection::new(runtime::Bits([false, false, false, true])),
                 ),
             ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
-                ),
-            ),
+            runtime::Condition::Or(8, 2),
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Quark(
                 robot::AnyInterrupt::AtIsection(
                     robot::AtIsection::new(runtime::Bits([true, false, false, false])),
                 ),
             ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, false, false, true])),
-                ),
-            ),
+            runtime::Condition::Or(10, 2),
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Wait(Nanos(7000000000)),
             runtime::Condition::Quark(
@@ -1578,22 +1578,14 @@ mod machine {
                     robot::AtIsection::new(runtime::Bits([false, true, false, false])),
                 ),
             ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
-                ),
-            ),
+            runtime::Condition::Or(12, 2),
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Quark(
                 robot::AnyInterrupt::AtIsection(
                     robot::AtIsection::new(runtime::Bits([true, false, false, false])),
                 ),
             ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
-                ),
-            ),
+            runtime::Condition::Or(14, 2),
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Wait(Nanos(7000000000)),
             runtime::Condition::Quark(
@@ -1606,11 +1598,7 @@ mod machine {
                     robot::AtIsection::new(runtime::Bits([true, false, false, true])),
                 ),
             ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, false, true, true])),
-                ),
-            ),
+            runtime::Condition::Or(16, 2),
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Quark(
                 robot::AnyInterrupt::AtIsection(
@@ -1620,7 +1608,7 @@ mod machine {
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Null,
             runtime::Condition::Wait(Nanos(5000000000)),
-            runtime::Condition::Or(2, 2),
+            runtime::Condition::Or(18, 2),
             runtime::Condition::Wait(Nanos(3000000000)),
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Quark(
@@ -1628,22 +1616,14 @@ mod machine {
                     robot::AtIsection::new(runtime::Bits([false, false, false, true])),
                 ),
             ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
-                ),
-            ),
+            runtime::Condition::Or(20, 2),
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Quark(
                 robot::AnyInterrupt::AtIsection(
                     robot::AtIsection::new(runtime::Bits([true, false, false, false])),
                 ),
             ),
-            runtime::Condition::Quark(
-                robot::AnyInterrupt::AtIsection(
-                    robot::AtIsection::new(runtime::Bits([false, false, false, true])),
-                ),
-            ),
+            runtime::Condition::Or(22, 2),
             runtime::Condition::Wait(Nanos(10000000000)),
             runtime::Condition::Wait(Nanos(7000000000)),
             runtime::Condition::Quark(
@@ -1656,6 +1636,24 @@ mod machine {
         operands: &[
             runtime::Condition::Quark(
                 robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, true])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
                     robot::AtIsection::new(runtime::Bits([false, true, false, false])),
                 ),
             ),
@@ -1666,6 +1664,36 @@ mod machine {
             ),
             runtime::Condition::Quark(
                 robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, false, true])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, true])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
                     robot::AtIsection::new(runtime::Bits([false, true, false, false])),
                 ),
             ),
@@ -1674,6 +1702,18 @@ mod machine {
                     robot::AtIsection::new(runtime::Bits([true, true, false, false])),
                 ),
             ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, false, true])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(30000000000)),
         ],
     };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
@@ -1828,26 +1868,28 @@ mod machine {
     /// The condition text of each bracket; empty for a loop.
     const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
-            "bumper", "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
-            "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
-            "atIsection 1000", "bumper", "wait 10", "atIsection 1001", "atIsection 0011",
-            "wait inf", "atIsection 0100", "wait 10", "bumper", "wait 5",
-            "atIsection 0100 OR atIsection 1100", "wait 3", "wait 3", "wait 10",
-            "bumper", "wait 10", "atIsection 0001", "atIsection 0010", "wait 10",
-            "atIsection 1000", "atIsection 0001", "wait 10", "wait 7", "atIsection 1001",
-            "wait 10", "bumper", "atIsection 0100", "atIsection 0010", "wait 10",
-            "atIsection 1000", "atIsection 0100", "wait 10", "wait 7", "atIsection 1000",
-            "atIsection 1001", "atIsection 0011", "wait 10", "atIsection 0100",
-            "wait 10", "bumper", "wait 5", "atIsection 0100 OR atIsection 1100",
-            "wait 3", "wait 10", "atIsection 0001", "atIsection 0010", "wait 10",
-            "atIsection 1000", "atIsection 0001", "wait 10", "wait 7", "atIsection 1001",
+            "bumper", "bumper", "atIsection 0100", "atIsection 0010 OR wait 30",
+            "wait inf", "atIsection 1000", "atIsection 0100 OR wait 30", "wait inf",
+            "wait 7", "atIsection 1000", "bumper", "wait 10", "atIsection 1001",
+            "atIsection 0011 OR wait 30", "wait inf", "atIsection 0100", "wait 10",
+            "bumper", "wait 5", "atIsection 0100 OR atIsection 1100", "wait 3", "wait 3",
+            "wait 10", "bumper", "wait 10", "atIsection 0001",
+            "atIsection 0010 OR wait 30", "wait 10", "atIsection 1000",
+            "atIsection 0001 OR wait 30", "wait 10", "wait 7", "atIsection 1001",
+            "wait 10", "bumper", "atIsection 0100", "atIsection 0010 OR wait 30",
+            "wait 10", "atIsection 1000", "atIsection 0100 OR wait 30", "wait 10",
+            "wait 7", "atIsection 1000", "atIsection 1001", "atIsection 0011 OR wait 30",
+            "wait 10", "atIsection 0100", "wait 10", "bumper", "wait 5",
+            "atIsection 0100 OR atIsection 1100", "wait 3", "wait 10", "atIsection 0001",
+            "atIsection 0010 OR wait 30", "wait 10", "atIsection 1000",
+            "atIsection 0001 OR wait 30", "wait 10", "wait 7", "atIsection 1001",
             "wait 10"
         ],
         &[
-            6, 12, 27, 42, 50, 65, 80, 88, 94, 109, 115, 122, 137, 152, 160, 175, 182,
-            188, 194, 228, 234, 240, 247, 253, 260, 275, 290, 297, 312, 327, 334, 340,
-            355, 362, 368, 383, 398, 405, 420, 435, 442, 448, 463, 478, 493, 500, 515,
-            522, 528, 534, 568, 574, 581, 596, 611, 618, 633, 648, 655, 661, 676, 683,
+            6, 12, 27, 53, 61, 76, 102, 110, 116, 131, 137, 144, 159, 185, 193, 208, 215,
+            221, 227, 261, 267, 273, 280, 286, 293, 308, 334, 341, 356, 382, 389, 395,
+            410, 417, 423, 438, 464, 471, 486, 512, 519, 525, 540, 555, 581, 588, 603,
+            610, 616, 622, 656, 662, 669, 684, 710, 717, 732, 758, 765, 771, 786, 793,
         ],
     );
     /// The name of each bracket; empty for an atom and a loop.
@@ -1867,208 +1909,226 @@ mod machine {
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["office.mdle"],
         brackets: &[
-            [0, 10, 0, 1],
-            [0, 20, 1, 1],
-            [0, 21, 2, 1],
-            [0, 22, 3, 1],
-            [0, 23, 4, 1],
+            [0, 11, 0, 1],
+            [0, 21, 1, 1],
+            [0, 22, 2, 1],
+            [0, 23, 3, 2],
             [0, 24, 5, 1],
             [0, 25, 6, 1],
-            [0, 26, 7, 1],
-            [0, 27, 8, 1],
-            [0, 28, 9, 1],
-            [0, 33, 10, 1],
-            [0, 34, 11, 1],
-            [0, 35, 12, 1],
-            [0, 36, 13, 1],
-            [0, 37, 14, 1],
-            [0, 38, 15, 1],
-            [0, 39, 16, 1],
-            [0, 59, 17, 1],
-            [0, 60, 18, 1],
-            [0, 61, 19, 2],
-            [0, 62, 21, 1],
-            [0, 63, 22, 1],
-            [0, 64, 23, 1],
-            [0, 44, 24, 1],
-            [0, 45, 25, 1],
-            [0, 46, 26, 1],
-            [0, 47, 27, 1],
-            [0, 48, 28, 1],
-            [0, 49, 29, 1],
-            [0, 50, 30, 1],
-            [0, 51, 31, 1],
-            [0, 52, 32, 1],
-            [0, 53, 33, 1],
-            [0, 54, 34, 1],
-            [0, 69, 35, 1],
-            [0, 70, 36, 1],
-            [0, 71, 37, 1],
-            [0, 72, 38, 1],
-            [0, 73, 39, 1],
-            [0, 74, 40, 1],
-            [0, 75, 41, 1],
-            [0, 76, 42, 1],
-            [0, 77, 43, 1],
-            [0, 78, 44, 1],
-            [0, 79, 45, 1],
-            [0, 80, 46, 1],
-            [0, 81, 47, 1],
-            [0, 82, 48, 1],
-            [0, 86, 49, 1],
-            [0, 87, 50, 1],
-            [0, 88, 51, 2],
-            [0, 89, 53, 1],
-            [0, 90, 54, 1],
-            [0, 91, 55, 1],
-            [0, 92, 56, 1],
-            [0, 93, 57, 1],
-            [0, 94, 58, 1],
-            [0, 95, 59, 1],
-            [0, 96, 60, 1],
-            [0, 97, 61, 1],
-            [0, 98, 62, 1],
-            [0, 99, 63, 1],
+            [0, 26, 7, 2],
+            [0, 27, 9, 1],
+            [0, 28, 10, 1],
+            [0, 29, 11, 1],
+            [0, 34, 12, 1],
+            [0, 35, 13, 1],
+            [0, 36, 14, 1],
+            [0, 37, 15, 2],
+            [0, 38, 17, 1],
+            [0, 39, 18, 1],
+            [0, 40, 19, 1],
+            [0, 60, 20, 1],
+            [0, 61, 21, 1],
+            [0, 62, 22, 2],
+            [0, 63, 24, 1],
+            [0, 64, 25, 1],
+            [0, 65, 26, 1],
+            [0, 45, 27, 1],
+            [0, 46, 28, 1],
+            [0, 47, 29, 1],
+            [0, 48, 30, 2],
+            [0, 49, 32, 1],
+            [0, 50, 33, 1],
+            [0, 51, 34, 2],
+            [0, 52, 36, 1],
+            [0, 53, 37, 1],
+            [0, 54, 38, 1],
+            [0, 55, 39, 1],
+            [0, 70, 40, 1],
+            [0, 71, 41, 1],
+            [0, 72, 42, 2],
+            [0, 73, 44, 1],
+            [0, 74, 45, 1],
+            [0, 75, 46, 2],
+            [0, 76, 48, 1],
+            [0, 77, 49, 1],
+            [0, 78, 50, 1],
+            [0, 79, 51, 1],
+            [0, 80, 52, 2],
+            [0, 81, 54, 1],
+            [0, 82, 55, 1],
+            [0, 83, 56, 1],
+            [0, 87, 57, 1],
+            [0, 88, 58, 1],
+            [0, 89, 59, 2],
+            [0, 90, 61, 1],
+            [0, 91, 62, 1],
+            [0, 92, 63, 1],
+            [0, 93, 64, 2],
+            [0, 94, 66, 1],
+            [0, 95, 67, 1],
+            [0, 96, 68, 2],
+            [0, 97, 70, 1],
+            [0, 98, 71, 1],
+            [0, 99, 72, 1],
+            [0, 100, 73, 1],
         ],
         conditions: runtime::TextList::new(
             concat![
-                "bumper", "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
-                "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
-                "atIsection 1000", "bumper", "wait 10", "atIsection 1001",
-                "atIsection 0011", "wait inf", "atIsection 0100", "wait 10", "bumper",
-                "wait 5", "atIsection 0100 OR atIsection 1100", "wait 3", "wait 3",
-                "wait 10", "bumper", "wait 10", "atIsection 0001", "atIsection 0010",
-                "wait 10", "atIsection 1000", "atIsection 0001", "wait 10", "wait 7",
-                "atIsection 1001", "wait 10", "bumper", "atIsection 0100",
-                "atIsection 0010", "wait 10", "atIsection 1000", "atIsection 0100",
-                "wait 10", "wait 7", "atIsection 1000", "atIsection 1001",
-                "atIsection 0011", "wait 10", "atIsection 0100", "wait 10", "bumper",
-                "wait 5", "atIsection 0100 OR atIsection 1100", "wait 3", "wait 10",
-                "atIsection 0001", "atIsection 0010", "wait 10", "atIsection 1000",
-                "atIsection 0001", "wait 10", "wait 7", "atIsection 1001", "wait 10"
+                "bumper", "bumper", "atIsection 0100", "atIsection 0010 OR wait 30",
+                "wait inf", "atIsection 1000", "atIsection 0100 OR wait 30", "wait inf",
+                "wait 7", "atIsection 1000", "bumper", "wait 10", "atIsection 1001",
+                "atIsection 0011 OR wait 30", "wait inf", "atIsection 0100", "wait 10",
+                "bumper", "wait 5", "atIsection 0100 OR atIsection 1100", "wait 3",
+                "wait 3", "wait 10", "bumper", "wait 10", "atIsection 0001",
+                "atIsection 0010 OR wait 30", "wait 10", "atIsection 1000",
+                "atIsection 0001 OR wait 30", "wait 10", "wait 7", "atIsection 1001",
+                "wait 10", "bumper", "atIsection 0100", "atIsection 0010 OR wait 30",
+                "wait 10", "atIsection 1000", "atIsection 0100 OR wait 30", "wait 10",
+                "wait 7", "atIsection 1000", "atIsection 1001",
+                "atIsection 0011 OR wait 30", "wait 10", "atIsection 0100", "wait 10",
+                "bumper", "wait 5", "atIsection 0100 OR atIsection 1100", "wait 3",
+                "wait 10", "atIsection 0001", "atIsection 0010 OR wait 30", "wait 10",
+                "atIsection 1000", "atIsection 0001 OR wait 30", "wait 10", "wait 7",
+                "atIsection 1001", "wait 10"
             ],
             &[
-                6, 12, 27, 42, 50, 65, 80, 88, 94, 109, 115, 122, 137, 152, 160, 175,
-                182, 188, 194, 228, 234, 240, 247, 253, 260, 275, 290, 297, 312, 327,
-                334, 340, 355, 362, 368, 383, 398, 405, 420, 435, 442, 448, 463, 478,
-                493, 500, 515, 522, 528, 534, 568, 574, 581, 596, 611, 618, 633, 648,
-                655, 661, 676, 683,
+                6, 12, 27, 53, 61, 76, 102, 110, 116, 131, 137, 144, 159, 185, 193, 208,
+                215, 221, 227, 261, 267, 273, 280, 286, 293, 308, 334, 341, 356, 382,
+                389, 395, 410, 417, 423, 438, 464, 471, 486, 512, 519, 525, 540, 555,
+                581, 588, 603, 610, 616, 622, 656, 662, 669, 684, 710, 717, 732, 758,
+                765, 771, 786, 793,
             ],
         ),
         operands: &[
-            [0, 10, 0, 0],
-            [0, 20, 0, 0],
+            [0, 11, 0, 0],
             [0, 21, 0, 0],
             [0, 22, 0, 0],
+            [0, 23, 0, 0],
             [0, 23, 0, 0],
             [0, 24, 0, 0],
             [0, 25, 0, 0],
             [0, 26, 0, 0],
+            [0, 26, 0, 0],
             [0, 27, 0, 0],
             [0, 28, 0, 0],
-            [0, 33, 0, 0],
+            [0, 29, 0, 0],
             [0, 34, 0, 0],
             [0, 35, 0, 0],
             [0, 36, 0, 0],
             [0, 37, 0, 0],
+            [0, 37, 0, 0],
             [0, 38, 0, 0],
             [0, 39, 0, 0],
-            [0, 59, 0, 0],
+            [0, 40, 0, 0],
             [0, 60, 0, 0],
             [0, 61, 0, 0],
-            [0, 61, 0, 0],
+            [0, 62, 0, 0],
             [0, 62, 0, 0],
             [0, 63, 0, 0],
             [0, 64, 0, 0],
-            [0, 44, 0, 0],
+            [0, 65, 0, 0],
             [0, 45, 0, 0],
             [0, 46, 0, 0],
             [0, 47, 0, 0],
             [0, 48, 0, 0],
+            [0, 48, 0, 0],
             [0, 49, 0, 0],
             [0, 50, 0, 0],
+            [0, 51, 0, 0],
             [0, 51, 0, 0],
             [0, 52, 0, 0],
             [0, 53, 0, 0],
             [0, 54, 0, 0],
-            [0, 69, 0, 0],
+            [0, 55, 0, 0],
             [0, 70, 0, 0],
             [0, 71, 0, 0],
             [0, 72, 0, 0],
+            [0, 72, 0, 0],
             [0, 73, 0, 0],
             [0, 74, 0, 0],
+            [0, 75, 0, 0],
             [0, 75, 0, 0],
             [0, 76, 0, 0],
             [0, 77, 0, 0],
             [0, 78, 0, 0],
             [0, 79, 0, 0],
             [0, 80, 0, 0],
+            [0, 80, 0, 0],
             [0, 81, 0, 0],
             [0, 82, 0, 0],
-            [0, 86, 0, 0],
+            [0, 83, 0, 0],
             [0, 87, 0, 0],
             [0, 88, 0, 0],
-            [0, 88, 0, 0],
+            [0, 89, 0, 0],
             [0, 89, 0, 0],
             [0, 90, 0, 0],
             [0, 91, 0, 0],
             [0, 92, 0, 0],
             [0, 93, 0, 0],
+            [0, 93, 0, 0],
             [0, 94, 0, 0],
             [0, 95, 0, 0],
+            [0, 96, 0, 0],
             [0, 96, 0, 0],
             [0, 97, 0, 0],
             [0, 98, 0, 0],
             [0, 99, 0, 0],
+            [0, 100, 0, 0],
         ],
         texts: runtime::TextList::new(
             concat![
-                "bumper", "null", "atIsection 0100", "atIsection 0010", "wait inf",
-                "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
-                "atIsection 1000", "null", "wait 10", "atIsection 1001",
-                "atIsection 0011", "wait inf", "atIsection 0100", "wait 10", "null",
-                "wait 5", "atIsection 0100", "atIsection 1100", "wait 3", "wait 3",
-                "wait 10", "null", "wait 10", "atIsection 0001", "atIsection 0010",
-                "wait 10", "atIsection 1000", "atIsection 0001", "wait 10", "wait 7",
-                "atIsection 1001", "wait 10", "null", "atIsection 0100",
-                "atIsection 0010", "wait 10", "atIsection 1000", "atIsection 0100",
-                "wait 10", "wait 7", "atIsection 1000", "atIsection 1001",
-                "atIsection 0011", "wait 10", "atIsection 0100", "wait 10", "null",
-                "wait 5", "atIsection 0100", "atIsection 1100", "wait 3", "wait 10",
-                "atIsection 0001", "atIsection 0010", "wait 10", "atIsection 1000",
-                "atIsection 0001", "wait 10", "wait 7", "atIsection 1001", "wait 10"
+                "bumper", "null", "atIsection 0100", "atIsection 0010", "wait 30",
+                "wait inf", "atIsection 1000", "atIsection 0100", "wait 30", "wait inf",
+                "wait 7", "atIsection 1000", "null", "wait 10", "atIsection 1001",
+                "atIsection 0011", "wait 30", "wait inf", "atIsection 0100", "wait 10",
+                "null", "wait 5", "atIsection 0100", "atIsection 1100", "wait 3",
+                "wait 3", "wait 10", "null", "wait 10", "atIsection 0001",
+                "atIsection 0010", "wait 30", "wait 10", "atIsection 1000",
+                "atIsection 0001", "wait 30", "wait 10", "wait 7", "atIsection 1001",
+                "wait 10", "null", "atIsection 0100", "atIsection 0010", "wait 30",
+                "wait 10", "atIsection 1000", "atIsection 0100", "wait 30", "wait 10",
+                "wait 7", "atIsection 1000", "atIsection 1001", "atIsection 0011",
+                "wait 30", "wait 10", "atIsection 0100", "wait 10", "null", "wait 5",
+                "atIsection 0100", "atIsection 1100", "wait 3", "wait 10",
+                "atIsection 0001", "atIsection 0010", "wait 30", "wait 10",
+                "atIsection 1000", "atIsection 0001", "wait 30", "wait 10", "wait 7",
+                "atIsection 1001", "wait 10"
             ],
             &[
-                6, 10, 25, 40, 48, 63, 78, 86, 92, 107, 111, 118, 133, 148, 156, 171,
-                178, 182, 188, 203, 218, 224, 230, 237, 241, 248, 263, 278, 285, 300,
-                315, 322, 328, 343, 350, 354, 369, 384, 391, 406, 421, 428, 434, 449,
-                464, 479, 486, 501, 508, 512, 518, 533, 548, 554, 561, 576, 591, 598,
-                613, 628, 635, 641, 656, 663,
+                6, 10, 25, 40, 47, 55, 70, 85, 92, 100, 106, 121, 125, 132, 147, 162,
+                169, 177, 192, 199, 203, 209, 224, 239, 245, 251, 258, 262, 269, 284,
+                299, 306, 313, 328, 343, 350, 357, 363, 378, 385, 389, 404, 419, 426,
+                433, 448, 463, 470, 477, 483, 498, 513, 528, 535, 542, 557, 564, 568,
+                574, 589, 604, 610, 617, 632, 647, 654, 661, 676, 691, 698, 705, 711,
+                726, 733,
             ],
         ),
         written: runtime::TextList::new(
             concat![
-                "bumper", "bumper", "atIsection 0100", "atIsection 0010", "wait inf",
-                "atIsection 1000", "atIsection 0100", "wait inf", "wait 7",
-                "atIsection 1000", "bumper", "wait 10", "atIsection 1001",
-                "atIsection 0011", "wait inf", "atIsection 0100", "wait 10", "bumper",
-                "wait 5", "atIsection 0100", "atIsection 1100", "wait 3", "wait 3",
-                "wait 10", "bumper", "wait 10", "atIsection 0001", "atIsection 0010",
-                "wait 10", "atIsection 1000", "atIsection 0001", "wait 10", "wait 7",
-                "atIsection 1001", "wait 10", "bumper", "atIsection 0100",
-                "atIsection 0010", "wait 10", "atIsection 1000", "atIsection 0100",
-                "wait 10", "wait 7", "atIsection 1000", "atIsection 1001",
-                "atIsection 0011", "wait 10", "atIsection 0100", "wait 10", "bumper",
-                "wait 5", "atIsection 0100", "atIsection 1100", "wait 3", "wait 10",
-                "atIsection 0001", "atIsection 0010", "wait 10", "atIsection 1000",
-                "atIsection 0001", "wait 10", "wait 7", "atIsection 1001", "wait 10"
+                "bumper", "bumper", "atIsection 0100", "atIsection 0010", "wait 30",
+                "wait inf", "atIsection 1000", "atIsection 0100", "wait 30", "wait inf",
+                "wait 7", "atIsection 1000", "bumper", "wait 10", "atIsection 1001",
+                "atIsection 0011", "wait 30", "wait inf", "atIsection 0100", "wait 10",
+                "bumper", "wait 5", "atIsection 0100", "atIsection 1100", "wait 3",
+                "wait 3", "wait 10", "bumper", "wait 10", "atIsection 0001",
+                "atIsection 0010", "wait 30", "wait 10", "atIsection 1000",
+                "atIsection 0001", "wait 30", "wait 10", "wait 7", "atIsection 1001",
+                "wait 10", "bumper", "atIsection 0100", "atIsection 0010", "wait 30",
+                "wait 10", "atIsection 1000", "atIsection 0100", "wait 30", "wait 10",
+                "wait 7", "atIsection 1000", "atIsection 1001", "atIsection 0011",
+                "wait 30", "wait 10", "atIsection 0100", "wait 10", "bumper", "wait 5",
+                "atIsection 0100", "atIsection 1100", "wait 3", "wait 10",
+                "atIsection 0001", "atIsection 0010", "wait 30", "wait 10",
+                "atIsection 1000", "atIsection 0001", "wait 30", "wait 10", "wait 7",
+                "atIsection 1001", "wait 10"
             ],
             &[
-                6, 12, 27, 42, 50, 65, 80, 88, 94, 109, 115, 122, 137, 152, 160, 175,
-                182, 188, 194, 209, 224, 230, 236, 243, 249, 256, 271, 286, 293, 308,
-                323, 330, 336, 351, 358, 364, 379, 394, 401, 416, 431, 438, 444, 459,
-                474, 489, 496, 511, 518, 524, 530, 545, 560, 566, 573, 588, 603, 610,
-                625, 640, 647, 653, 668, 675,
+                6, 12, 27, 42, 49, 57, 72, 87, 94, 102, 108, 123, 129, 136, 151, 166,
+                173, 181, 196, 203, 209, 215, 230, 245, 251, 257, 264, 270, 277, 292,
+                307, 314, 321, 336, 351, 358, 365, 371, 386, 393, 399, 414, 429, 436,
+                443, 458, 473, 480, 487, 493, 508, 523, 538, 545, 552, 567, 574, 580,
+                586, 601, 616, 622, 629, 644, 659, 666, 673, 688, 703, 710, 717, 723,
+                738, 745,
             ],
         ),
         values: &[],

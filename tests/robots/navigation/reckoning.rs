@@ -10,7 +10,7 @@ fn a_robot_at_another_landmark_has_not_arrived() {
     // As printed in the paper, the plan ends its first atom half-way through a turn, and the robot stays at lab 1.
     let folder = folder("navigation_elsewhere");
     let graph = fs::read_to_string(root().join("plans/navigation/office.mdle")).unwrap();
-    let printed = "  (Atom (atIsection 1001) (goAvoid 90 40 20))\n  (Atom (atIsection 0011)";
+    let printed = "  (Atom (atIsection 1001) (goAvoid 90 40 20))\n  (Atom (atIsection 0011 OR wait 30)";
     let begun = format!("  (Atom (wait 10) (rotate 90))\n{printed}");
     assert!(graph.contains(&begun), "{graph}");
     fs::write(folder.join("office.mdle"), graph.replace(&begun, printed)).unwrap();
