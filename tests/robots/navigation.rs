@@ -219,6 +219,8 @@ fn a_graph_without_the_way_is_refused() {
     $ b d
     route: b -> d (BToD)
     2.0 s  plan over: wait 2s (graph.mdle:3, of "bumper OR wait 2s")
+    warning: there is no file `landmarks.toml`, so all landmarks have the axis 0
+    help: write `[[landmark]]`, `name = "…"` and `axis = "…deg"` of each landmark there, or name another file by `--landmarks`
     at b
     error: the way from b to d is not done: `BToD` was ended by `wait 2s`
     [3]

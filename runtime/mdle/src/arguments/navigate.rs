@@ -68,7 +68,7 @@ pub(super) fn navigate() -> Command {
                 .help("File of the landmarks' frames [default: the `landmarks.toml` beside the graph]"),
         )
         .after_help(
-            "Exit status: that of the run; 1 if there is no route, or a plan on it has errors or never ends; 2 for wrong usage or \
+            "Exit status: that of the run; 1 if there is no route, the graph has errors, or a plan on the route never ends; 2 for wrong usage or \
              a file that cannot be read; 3 if a plan on the route was ended by its own condition, as by the bumper",
         )
 }

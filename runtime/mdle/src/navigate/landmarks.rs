@@ -41,20 +41,21 @@ struct Landmark {
 }
 
 impl Landmarks {
-    /// Reads the file. If `is_named` is `false`, the file may be missing.
+    /// Reads the file. If `is_named` is `false`, the file may be missing; the result is then `None`.
     ///
     /// # Errors
     /// Fails with a message if the file cannot be read, has errors, or names a landmark that the graph does not
     /// contain.
-    pub(super) fn read(file: &Path, is_named: bool, known: &[&str]) -> Result<Self, String> {
+    pub(super) fn read(file: &Path, is_named: bool, known: &[&str]) -> Result<Option<Self>, String> {
         let shown = file.display();
         let bytes = match mdle_host::read_file(file, LARGEST) {
             Ok(bytes) => bytes,
-            Err(error) if !is_named && error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
+            Err(error) if !is_named && error.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(format!("the landmarks in {shown} cannot be read: {error}")),
         };
         let text = String::from_utf8(bytes).map_err(|_| format!("{shown} is not UTF-8 text"))?;
-        Self::parse(&text, known).map_err(|(line, sentence)| format!("{shown}:{line}: {sentence}"))
+        let landmarks = Self::parse(&text, known);
+        landmarks.map(Some).map_err(|(line, sentence)| format!("{shown}:{line}: {sentence}"))
     }
 
     /// Parses the text of the file. An error contains its line number.

@@ -3,6 +3,7 @@
 mod landmarks;
 
 use std::ffi::OsString;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -47,7 +48,9 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
     let (beside, known) = (arguments.graph.with_file_name(LANDMARKS), graph.landmarks());
     let file = arguments.landmarks.as_deref();
     let file = (file.unwrap_or(&beside), file.is_some());
-    let landmarks = Landmarks::read(file.0, file.1, &known).map_err(Failure::Usage)?;
+    let described = Landmarks::read(file.0, file.1, &known).map_err(Failure::Usage)?;
+    let is_described = described.is_some();
+    let landmarks = described.unwrap_or_default();
     let legs = legs(&route, &landmarks, &arguments, &target)?;
     let Some(first) = legs.first() else {
         let sentence = format!("the robot is at {} already", Printable(&arguments.to));
@@ -55,6 +58,9 @@ pub(crate) fn navigate(arguments: Navigate, library: &mut Library<Sensed>) -> Re
         return Ok(ExitCode::SUCCESS);
     };
     failure::print_line(&format!("route: {}", words(&route)))?;
+    if !is_described {
+        failure::warning(&without_axes(file.0));
+    }
     let maps = landmarks.maps(file.0, landmarks.axis(&arguments.from))?;
     let places = landmarks.places(landmarks.axis(&arguments.from));
     let look = (!maps.is_empty()).then(|| LookPlan::of(maps, &arguments.graph, &target)).transpose()?;
@@ -82,6 +88,13 @@ fn lonely(maps: &[LandmarkMap]) -> Option<String> {
     let [LandmarkMap { name, .. }] = maps else { return None };
     let (name, help) = (Printable(name), "name a `map` of each landmark that a robot may mistake for it");
     Some(format!("{name} is the only landmark with a map: a robot at another one may pass as at {name}\nhelp: {help}"))
+}
+
+/// Returns a warning about the file of landmarks, which is missing.
+fn without_axes(file: &Path) -> String {
+    let sentence = format!("there is no file `{}`, so all landmarks have the axis 0", file.display());
+    let entry = "`[[landmark]]`, `name = \"…\"` and `axis = \"…deg\"`";
+    format!("{sentence}\nhelp: write {entry} of each landmark there, or name another file by `--landmarks`")
 }
 
 fn call(arguments: &Navigate, options: Vec<OsString>) -> Call {
