@@ -150,6 +150,19 @@ fn a_triangle_that_fits_through_no_door_stays_outside() {
 }
 
 #[test]
+fn a_formation_has_room_for_the_bodies() {
+    let folder = scenario("formation_room", "");
+    let plan = fs::read_to_string(folder.join("triangle.mdle")).unwrap();
+    for (spacing, status) in [("20cm", 2), ("41cm", 2), ("45cm", 4)] {
+        fs::write(folder.join("triangle.mdle"), plan.replace("triangle 1m", &format!("triangle {spacing}"))).unwrap();
+        let message = refused(&folder, &["run", "formation.toml", "--timeout", "200ms"]);
+        assert!(message.ends_with(&format!("[{status}]")), "{spacing}: {message}");
+        let touches = "`robot2` would touch `robot1` in the formation";
+        assert_eq!(message.contains(touches), status == 2, "{spacing}: {message}");
+    }
+}
+
+#[test]
 fn the_same_seed_gives_the_same_run() {
     let folder = scenario("formation_bytes", "\n[link]\nlatency = \"0ms..200ms\"\nloss = 0.1\n");
     let bytes = |name: &str| (run(&folder, 5, name).stdout, fs::read(folder.join(name)).unwrap());
@@ -206,7 +219,10 @@ fn a_scenario_has_the_robots_of_its_group() {
     let refused =
         |test: &str, robots: &[&str], more: &str| refused(&pair(test, robots, more), &["run", "formation.toml"]);
     let lacks = refused("formation_lacks", &["robot1", "robot3"], "");
-    assert!(lacks.contains("the group `Pair` has the robot `robot2`, and the scenario has none"), "{lacks}");
+    let lacking = "the group `Pair` has the robot `robot2`, and the scenario has none";
+    assert!(lacks.contains(&format!("{lacking}; did you mean `robot3`?")), "{lacks}");
+    let alone = refused("formation_alone", &["robot1"], "");
+    assert!(alone.contains(lacking) && !alone.contains("did you mean"), "{alone}");
     let more = refused("formation_more", &["robot1", "robot2", "robot3"], "");
     assert!(more.contains("the group `Pair` has no robot `robot3`"), "{more}");
     assert!(more.contains("the robots of the group are robot1, robot2"), "{more}");

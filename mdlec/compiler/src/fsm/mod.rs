@@ -27,7 +27,7 @@ pub use machine::{Machine, Visit};
 pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
 pub use observation::observation1;
 pub use reads::{AttributeRead, module_reads};
-pub use robots::{Rendezvous, meetings, other_robots};
+pub use robots::{FormationPlace, Rendezvous, formation_places, meetings, other_robots};
 pub use rows::{Rows, replayed_files, rows};
 pub use validation::validate;
 pub use words::{BracketText, OperandText, PlanWords, words};

@@ -15,6 +15,17 @@ pub struct Rendezvous<'m> {
     pub robot: &'m str,
 }
 
+/// A place that a robot keeps relative to another robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FormationPlace<'m> {
+    /// Name of the other robot.
+    pub robot: &'m str,
+    /// Distance ahead of the other robot, in metres.
+    pub ahead: f64,
+    /// Distance to the left of the other robot, in metres.
+    pub left: f64,
+}
+
 /// Returns the names of other robots that occur in the quarks of a machine; each name is listed once.
 #[must_use]
 pub fn other_robots(machine: &Machine) -> BTreeSet<&str> {
@@ -34,6 +45,14 @@ pub fn meetings(machine: &Machine) -> BTreeSet<Rendezvous<'_>> {
         });
     }
     meetings
+}
+
+/// Returns the places that the `slot` laws of a machine keep.
+pub fn formation_places(machine: &Machine) -> impl Iterator<Item = FormationPlace<'_>> {
+    machine.quarks().iter().filter(|quark| quark.name == "slot").filter_map(|quark| {
+        let [_, ahead, left] = &quark.args[..] else { return None };
+        Some(FormationPlace { robot: robots_of(quark).next()?, ahead: ahead.in_si(), left: left.in_si() })
+    })
 }
 
 fn robots_of(quark: &Quark) -> impl Iterator<Item = &str> {

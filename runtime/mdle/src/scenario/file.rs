@@ -7,6 +7,7 @@ use std::time::Duration;
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_host::Quantity;
 use mdle_runtime::Printable;
+use mdle_sim::Body;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -142,6 +143,13 @@ pub(super) fn duration(text: &At<String>, least: f64, most: f64) -> Result<Durat
     let [least, most] = [least, most].map(Duration::from_secs_f64);
     let read = Quantity::duration(text.get_ref(), "s", least, most);
     read.map_err(|sentence| ScenarioError::at(text.span(), sentence))
+}
+
+/// Returns the body with the name `text`; the ideal body if `text` is `None`.
+pub(super) fn body(text: Option<&At<String>>) -> Result<Body, ScenarioError> {
+    let Some(text) = text else { return Ok(Body::Ideal) };
+    let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == *text.get_ref());
+    body.ok_or_else(|| ScenarioError::at(text.span(), "expected `ideal`, `scout` or `atrv`"))
 }
 
 /// Reads a scenario file.

@@ -10,6 +10,7 @@ mod fleet;
 mod member;
 mod output;
 mod records;
+mod room;
 mod sent_plan;
 mod setup;
 

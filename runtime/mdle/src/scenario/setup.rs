@@ -15,7 +15,8 @@ use mdle_runtime::{Alphabet, Nanos, Plan as _, Pose, Setpoint};
 use mdle_sim::alphabet::Alphabet as SimAlphabet;
 use mdle_sim::{Body, Make, RobotEars, Sim, Simulated, Start, StartNoise, Walls, World};
 
-use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText, duration};
+use super::file::{At, LinkText, RobotText, ScenarioError, ScenarioText, body, duration};
+use super::room;
 use super::sent_plan::{SentPlan, sent_by};
 use crate::arguments::head;
 use crate::failure::{self, Failure};
@@ -109,9 +110,8 @@ impl Scenario {
             members: Vec::new(),
             target: Arc::new(files.settings(&files.path)?.target(Some(Sim::NAME))?),
         };
-        let names: Vec<&str> = text.robot.iter().map(|robot| robot.name.get_ref().as_str()).collect();
         for robot in &text.robot {
-            let mut member = scenario.member(robot, files, &names)?;
+            let mut member = scenario.member(robot, files, &text.robot)?;
             member.sends = sent_by(&member.name, &text, files)?;
             scenario.members.push(member);
         }
@@ -119,9 +119,9 @@ impl Scenario {
     }
 
     /// Creates a robot. It must not overlap with the robots that were created before.
-    fn member(&self, text: &RobotText, from: &InputFiles, names: &[&str]) -> Result<ScenarioRobot, SetupError> {
-        let name = text.name.get_ref();
-        let (loaded, files) = plan(&text.file, text.plan.as_ref(), from, Some((text, names)))?;
+    fn member(&self, text: &RobotText, from: &InputFiles, robots: &[RobotText]) -> Result<ScenarioRobot, SetupError> {
+        let (name, names) = (text.name.get_ref(), &names(robots)[..]);
+        let (loaded, files) = plan(&text.file, text.plan.as_ref(), from, Some((text, robots)))?;
         let plan = loaded.plan();
         for other in plan.robots() {
             if other == name || !names.contains(other) {
@@ -201,13 +201,13 @@ impl Scenario {
 pub(super) type PlanWithFiles<A> = (Arc<Loaded<A>>, Vec<(String, String)>);
 
 /// Compiles and loads the plan of a robot; if the file contains a group's plan, the plan for this robot of the group.
-/// `robot` contains the robot and the names of all robots of the scenario; `None` for a crowd. `A` is bound to the
-/// alphabet of the simulated robot.
+/// `robot` contains the robot and all robots of the scenario; `None` for a crowd. `A` is bound to the alphabet of the
+/// simulated robot.
 pub(super) fn plan<A: Alphabet>(
     file: &At<PathBuf>,
     plan_name: Option<&At<String>>,
     files: &InputFiles,
-    robot: Option<(&RobotText, &[&str])>,
+    robot: Option<(&RobotText, &[RobotText])>,
 ) -> Result<PlanWithFiles<A>, SetupError> {
     let (place, file) = (file.span(), files.named(file.get_ref()));
     let target = files.settings(&file)?.target(Some(Sim::NAME))?;
@@ -219,7 +219,7 @@ pub(super) fn plan<A: Alphabet>(
         return Err(ScenarioError::at(place, message).help(help).into());
     }
     let group = robot.and_then(|robot| Some((robot, input.group(named)?)));
-    let part = group.map(|((text, names), group)| part(text, names, &group)).transpose()?;
+    let part = group.map(|((text, robots), group)| part(text, &names(robots), &group)).transpose()?;
     let wanted = part.as_deref().or(named);
     if let Some(name) = wanted {
         let place = plan_name.map_or(place.clone(), At::span);
@@ -233,7 +233,14 @@ pub(super) fn plan<A: Alphabet>(
     }
     let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine)).collect();
     let machine = input.only(named).map_err(|error| placed(place, error))?;
+    if let Some((text, robots)) = robot {
+        room::check(&machine, text, robots)?;
+    }
     Ok((Arc::new(load::load(&machine, &input.sources, &target.alphabet)?), texts(&input)))
+}
+
+fn names(robots: &[RobotText]) -> Vec<&str> {
+    robots.iter().map(|robot| robot.name.get_ref().as_str()).collect()
 }
 
 /// Returns the error with its place in the scenario, unless the error is in the plan's own file.
@@ -258,7 +265,10 @@ fn part(text: &RobotText, names: &[&str], group: &RobotGroup) -> Result<String, 
     match group.robots.iter().find(|robot| !names.contains(&robot.as_str())) {
         None => Ok(part),
         Some(lacking) => {
-            let near = did_you_mean(lacking, names);
+            // Another robot of the group is in the scenario under its own name, so it cannot be meant.
+            let is_own = |name: &str| group.robots.iter().any(|robot| robot == name);
+            let strangers: Vec<&str> = names.iter().copied().filter(|name| !is_own(name)).collect();
+            let near = did_you_mean(lacking, &strangers);
             let message = format!("the group `{name}` has the robot `{lacking}`, and the scenario has none{near}");
             Err(ScenarioError::at(text.file.span(), message).help(format!("the robots of the group are {robots}")))
         }
@@ -316,13 +326,6 @@ pub(super) fn world(text: Option<&At<String>>, files: &InputFiles) -> Result<(Wo
         return Err(refused("a world with things that move is for one robot".to_owned()).help("leave them out"));
     }
     Ok((world, name.clone()))
-}
-
-/// Returns the body with the name `text`; the ideal body if `text` is `None`.
-pub(super) fn body(text: Option<&At<String>>) -> Result<Body, ScenarioError> {
-    let Some(text) = text else { return Ok(Body::Ideal) };
-    let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == *text.get_ref());
-    body.ok_or_else(|| ScenarioError::at(text.span(), "expected `ideal`, `scout` or `atrv`"))
 }
 
 fn faults(text: &LinkText) -> Result<Faults, ScenarioError> {

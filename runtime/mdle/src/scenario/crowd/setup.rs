@@ -10,7 +10,7 @@ use mdle_runtime::{Nanos, Plan as _};
 use mdle_sim::{Make, Sim, Simulated};
 
 use super::super::arguments::ScenarioOptions;
-use super::super::file::{At, CrowdText, ScenarioError, ScenarioText, duration};
+use super::super::file::{At, CrowdText, ScenarioError, ScenarioText, body, duration};
 use super::super::records::begin;
 use super::super::setup::{self, SetupError};
 use super::alphabet::CrowdAlphabet;
@@ -129,7 +129,7 @@ fn robots(
     seed: Option<u64>,
     period: Duration,
 ) -> Result<Vec<Member>, SetupError> {
-    let body = setup::body(crowd.body.as_ref())?;
+    let body = body(crowd.body.as_ref())?;
     let count = *crowd.robots.get_ref();
     let spacing = crowd.spacing.as_ref().map(spacing).transpose()?.unwrap_or(SPACING);
     let seeded = |number: u64| seed.map(|seed| seed.wrapping_mul(count).wrapping_add(number));
