@@ -158,7 +158,7 @@ pub(super) fn body(text: Option<&At<String>>) -> Result<Body, ScenarioError> {
 /// Fails if the text is not TOML, if it contains unknown keys or values of the wrong type, or if it has no robot or two
 /// robots with the same name.
 pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
-    let file: ScenarioText = toml::from_str(text).map_err(|error| refused(&error))?;
+    let file: ScenarioText = toml::from_str(text).map_err(|error| refused(&error, text))?;
     for (number, robot) in file.robot.iter().enumerate() {
         let (name, place) = (robot.name.get_ref(), robot.name.span());
         if !is_robot_name(name) {
@@ -175,6 +175,10 @@ pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
         let help = format!("leave `[[robot]]` or `[crowd]` with its {} robots out", crowd.robots.get_ref());
         return Err(ScenarioError::at(robot.name.span(), message).help(help));
     }
+    if let (Some(_), Some((place, what))) = (&file.crowd, between_robots(&file)) {
+        let message = format!("a crowd has no {what}: its robots have no names");
+        return Err(ScenarioError::at(place, message).help("leave it out, or write `[[robot]]` for each robot"));
+    }
     if file.robot.is_empty() && file.crowd.is_none() {
         let help = "write `[[robot]]`, then `name = \"…\"`, `file = \"….mdle\"` and `start = \"x, y, degrees\"`";
         let message = "the scenario has no robot".to_owned();
@@ -183,12 +187,39 @@ pub(super) fn read(text: &str) -> Result<ScenarioText, ScenarioError> {
     Ok(file)
 }
 
+/// Returns the place and the description of the first value that is about robots that hear each other; `None` if the
+/// file has no such value.
+fn between_robots(file: &ScenarioText) -> Option<(Range<usize>, &'static str)> {
+    let LinkText { latency, loss, duplication } = &file.link;
+    let numbers = [loss, duplication].into_iter().flatten().map(At::span);
+    let link = latency.iter().map(At::span).chain(numbers).map(|place| (place, "link"));
+    link.chain(file.sent_plan.iter().map(|plan| (plan.at.span(), "plans that robots send"))).next()
+}
+
+/// Returns the error for a number in the place of a text, as in `spacing = 0.3`; `None` for any other error.
+fn unquoted(place: Option<Range<usize>>, message: &str, text: &str) -> Option<ScenarioError> {
+    let number = ["floating point", "integer"].iter().find_map(|kind| {
+        message.strip_prefix(&format!("invalid type: {kind} `"))?.strip_suffix("`, expected a string")
+    })?;
+    let line = text.get(..place.as_ref()?.start)?.lines().last().unwrap_or_default();
+    let unit = match line.split('=').next().unwrap_or_default().trim() {
+        "timeout" | "period" | "latency" | "killed" | "at" => Some("s"),
+        "spacing" | "ears" => Some("m"),
+        _ => None,
+    };
+    let help = unit.map(|unit| format!("write `\"{number}{unit}\"`")).unwrap_or_default();
+    Some(ScenarioError { place, message: format!("expected a text in quotes, found the number {number}"), help })
+}
+
 /// Returns the error for a text that the TOML parser refuses. For an unknown key, the error proposes the most similar
 /// name.
-fn refused(error: &toml::de::Error) -> ScenarioError {
+fn refused(error: &toml::de::Error, text: &str) -> ScenarioError {
     let place = error.span();
     let message = error.message().replace('\n', "; ").replace("expected u64", "expected a whole number");
     let message = message.replace("missing field", "there has to be a key");
+    if let Some(error) = unquoted(place.clone(), &message, text) {
+        return error;
+    }
     let Some((unknown, known)) = message.strip_prefix("unknown field `").and_then(|rest| rest.split_once('`')) else {
         return ScenarioError { place, message, help: String::new() };
     };
@@ -219,6 +250,12 @@ mod tests {
                 "[link]\nlos = 0.1\n".to_owned() + &robot("a"),
                 "[[robot]]\nname = \"a\"\nfile = \"a.mdle\"\n".to_owned(),
                 "seed = \"many\"\n".to_owned() + &robot("a"),
+                "timeout = 20\n".to_owned() + &robot("a"),
+                robot("a") + "body = 3\n",
+                "[crowd]\nrobots = 9\nfile = \"a.mdle\"\nspacing = 0.3\n".to_owned(),
+                "[link]\nloss = 0.1\n[crowd]\nrobots = 9\nfile = \"a.mdle\"\n".to_owned(),
+                "[crowd]\nrobots = 9\nfile = \"a.mdle\"\n[[sent-plan]]\nat = \"1s\"\nfrom = \"a\"\nto = \"b\"\nfile = \"b.mdle\"\n"
+                    .to_owned(),
             ]
             .map(|text| message(&text))
             .join("\n")
