@@ -23,12 +23,23 @@ pub(super) fn proposal(tree: &Tree, path: &str) -> String {
         let mut inside_names = inside.iter().map(|name| name.trim_end_matches('/'));
         let next = if inside_names.clone().any(|known| known == name) { Some(name) } else { None };
         let Some(next) = next.or_else(|| nearest(name, &mut inside_names)) else {
-            return if is_changed { mean(&known) } else { content(&known, &inside) };
+            return match is_changed {
+                true => mean(&known),
+                false => sending(path).unwrap_or_else(|| content(&known, &inside)),
+            };
         };
         is_changed |= next != name;
         known = format!("{known}/{next}");
     }
     if is_changed { mean(&known) } else { String::new() }
+}
+
+/// Returns the end of a sentence about the method that would send plans to a robot. The method is there only if the
+/// file of the link has a key for plans of this robot (docs/src/many_robots.md); `None` for another path.
+fn sending(path: &str) -> Option<String> {
+    let robot = path.strip_prefix("/link/")?.strip_suffix("/send_plan").filter(|robot| !robot.contains('/'))?;
+    let table = format!("add `plans = \"KEY\"` to the table of `{robot}` in the file of `--link`");
+    Some(format!(": {table}, and the same key to the table of this robot in the file of `{robot}`"))
 }
 
 /// Returns the end of a sentence that lists the names in a folder.
@@ -67,6 +78,7 @@ mod tests {
             "/speed",
             "/lib/ears",
             "/clock/now/x",
+            "/link/second/send_plan",
         ];
         let proposals = wrong.map(|path| format!("{path}{}", proposal(&tree, path)));
         insta::assert_snapshot!(proposals.join("\n"));
