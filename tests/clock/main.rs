@@ -36,6 +36,7 @@ fn linked_robots_go_by_the_clock() {
         links::three_processes_meet_and_go_on_when_one_is_killed,
         links::a_robot_with_another_key_is_no_peer,
         pursuits::simulated_robots_learn_over_a_bad_line,
+        pursuits::the_commands_of_the_book_begin_a_pursuit,
         pursuits::scouts_in_one_world_learn_over_tcp,
         pursuits::a_program_that_dies_leaves_no_scout_waiting,
         sent_plans::a_plan_reads_a_module_of_another_process,

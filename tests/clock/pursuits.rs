@@ -11,6 +11,7 @@ use std::thread;
 use std::time::Duration;
 
 use mdle_emulator::Pace;
+use mdle_tests::book::{fences, pages};
 use mdle_tests::chance::{Chance, repeated, sized};
 use mdle_tests::executable::{folder, mdle};
 use mdle_tests::pursuit::{Course, PERIOD, ROBOTS, assert_converge, on_scouts, prepare};
@@ -54,6 +55,40 @@ pub(crate) fn simulated_robots_learn_over_a_bad_line() {
             Course::of(&folder, number - 1, child)
         });
         assert_converge("bad line", &courses, laps);
+    }
+}
+
+/// The commands of the book start three robots, and the first one drives its path when all of them have met. The free
+/// addresses replace those of the page.
+pub(crate) fn the_commands_of_the_book_begin_a_pursuit() {
+    let folder = prepared("pursuit_of_the_book", 4, "10min", None, 0);
+    fs::remove_dir(folder.join("robot3")).unwrap();
+    let page = pages().into_iter().find(|page| page.path.ends_with("many_robots.md")).unwrap();
+    let (fences, addresses) = (fences(&page), super::addresses::<3>());
+    for name in ["robot1", "robot2", "robot3", "floor"] {
+        let file = format!("{name}.toml");
+        let block = fences.iter().find(|fence| fence.file() == Some(&file)).unwrap();
+        let replaced = (1..).zip(addresses).fold(block.text.clone(), |text, (number, address)| {
+            text.replace(&format!("127.0.0.1:741{number}"), &address.to_string())
+        });
+        fs::write(folder.join(file), replaced).unwrap();
+    }
+    let block = fences.iter().find(|fence| fence.text.starts_with("mdle run first_robot.mdle")).unwrap();
+    assert_eq!(block.text.lines().count(), 3, "{}", block.text);
+    let children: Vec<Child> = block
+        .text
+        .lines()
+        .map(|line| {
+            let mut command = Command::new(mdle());
+            command.args(line.split_whitespace().skip(1)).args(["--timeout", "5s"]).current_dir(&folder);
+            command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+        })
+        .collect();
+    for (child, law) in children.into_iter().zip(["path lastPath", "go 50 0", "go 50 0"]) {
+        let output = child.wait_with_output().unwrap();
+        let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes));
+        let report = format!("{out}{err}");
+        assert!(report.contains(law) && report.contains("<- rendezvous"), "{report}");
     }
 }
 

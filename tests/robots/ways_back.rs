@@ -52,9 +52,18 @@ fn a_path_that_is_recorded_may_be_missing() {
     fs::remove_file(folder.join("way.csv")).unwrap();
     let refused = run(&folder, "");
     assert_eq!(refused.status.code(), Some(2), "{}", String::from_utf8_lossy(&refused.stdout));
-    let output = run(&folder, " --records way");
-    let report = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success() && report.contains("plan over: wait 1min"), "without a path it stands: {report}");
+    for options in [" --records way", " --records way --paths gone"] {
+        let output = run(&folder, options);
+        let report = String::from_utf8(output.stdout).unwrap();
+        assert!(
+            output.status.success() && report.contains("plan over: wait 1min"),
+            "without a path it stands: {report}"
+        );
+    }
+    for (options, folder_name) in [(" --paths gone", "gone"), (" --records way --paths there.mdle", "there.mdle")] {
+        let refused = String::from_utf8(run(&folder, options).stderr).unwrap();
+        assert!(refused.contains(&format!("--paths {folder_name}: there is no such folder")), "{refused}");
+    }
 }
 
 #[test]

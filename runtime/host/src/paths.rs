@@ -79,12 +79,14 @@ pub(crate) fn load(
         )));
     };
     let folder = matches.get_one::<PathBuf>("paths").map(PathBuf::as_path);
-    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+    let names = names.iter().copied().filter(|name| later != Some(name) || place(folder, name).exists());
+    let names: Vec<_> = names.collect();
+    // A robot that records all paths that it replays needs no folder when it begins.
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir() && (folder.exists() || !names.is_empty())) {
         return Err(Refusal::Usage(format!("--paths {}: there is no such folder", folder.display())));
     }
-    let names = names.iter().copied().filter(|name| later != Some(name) || place(folder, name).exists());
     let read = |name| read(folder, name, fastest).map(|setpoints| (name, setpoints)).map_err(Refusal::Usage);
-    let paths: BTreeMap<&'static str, Vec<Setpoint>> = names.map(read).collect::<Result<_, _>>()?;
+    let paths: BTreeMap<&'static str, Vec<Setpoint>> = names.into_iter().map(read).collect::<Result<_, _>>()?;
     let stored = paths.into_iter().map(|(name, setpoints)| StoredPath { name, setpoints: setpoints.leak() });
     Ok(PathStore::new(stored.collect::<Vec<_>>().leak()))
 }
