@@ -30,7 +30,7 @@ macro_rules! signals {
         pub struct $name(&'static str);
 
         impl $name {
-            /// Creates the signal of this module.
+            /// Creates the signal that reads what the module with the name `of` publishes.
             #[must_use]
             pub const fn new(of: &'static str) -> Self {
                 Self(of)

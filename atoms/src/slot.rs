@@ -23,9 +23,16 @@ const NEAR: f64 = 0.03;
 /// Maximum forward speed, in m/s, and maximum turn rate, in rad/s.
 const FASTEST: (f64, f64) = (0.5, 1.5);
 
-/// The control `slot`: `u = f + k (g + l f/|f| - q - l e)`, `v = u·e`, `ω = u·n/l`. The point at the distance `l` ahead
-/// of the robot, whose position is `q` and whose heading is the unit vector `e`, follows the point ahead of its slot,
-/// whose position is `g` and whose velocity is `f`. The direction of the formation is the leader's heading after a
+/// The control `slot`: keeps the robot at its slot, a position relative to the leader of the formation. It steers the
+/// point `q + l e` ahead of the robot to the point `g + l f/|f|` ahead of the slot.
+///
+/// `u = f + k (g + l f/|f| - q - l e)` is the velocity that the steered point should have; `v = u·e` and `ω = u·n/l`
+/// are the forward speed and the turn rate, before both are limited to `FASTEST`. Here, `q` is the position of the
+/// robot, `e` the unit vector of its heading, `n` the unit vector to its left, `g` and `f` the position and the
+/// velocity of the slot, `k` the gain `CORRECTS`, and `l` the distance `AHEAD`. If the slot is at rest, `e` replaces
+/// `f/|f|`, and a robot near the slot stands still.
+///
+/// `g` and `f` are computed with the direction of the formation. This direction is the leader's heading after a
 /// low-pass filter with the time constant `TURNS_IN`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slot {

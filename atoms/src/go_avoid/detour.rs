@@ -19,8 +19,9 @@ const LEAST: Nanos = Nanos(1_000_000_000);
 /// Minimum duration of a detour whose goal has been replaced by another one. The distance of such a goal may be
 /// unknown, so it cannot be measured how much nearer the robot has come.
 const LEAST_RENEWED: Nanos = Nanos(4_000_000_000);
-/// Angle, in radians, by which a robot that circles has turned towards the obstacle without leaving the place. On the
-/// way out of a corner, the robot turns by up to a circle in one place.
+/// Angle, in radians. A robot that turns towards the obstacle by more than this angle within `SAME_PLACE` drives in
+/// circles, because it has lost the obstacle. The angle is larger than a full turn, because a robot turns by up to a
+/// full turn within `SAME_PLACE` on the way out of a corner.
 const CIRCLES: f64 = 1.5 * TAU;
 /// Distance from the pose at which a circle may have begun beyond which the robot has left the place. Circles round
 /// nothing or round a post are smaller, and the ends of the walls of a maze are further apart.

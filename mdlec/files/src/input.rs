@@ -37,7 +37,7 @@ pub struct Input {
 /// A group of robots: the name of its plan, and its robots in order.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RobotGroup {
-    /// Name of the group's plan.
+    /// Name of the plan of the whole group of robots, from which the plan of each robot is derived.
     pub name: String,
     /// Names of the robots.
     pub robots: Vec<String>,

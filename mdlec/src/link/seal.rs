@@ -32,8 +32,8 @@ pub(super) struct Seal {
 }
 
 impl Seal {
-    /// Reads the list, and removes each compiled file that does not match it. Must be called with the cache
-    /// locked.
+    /// Reads the list of compiled files and their hashes from the cache. Removes each compiled file that is not listed
+    /// or has a different hash, so that cargo compiles it again. Must be called with the cache locked.
     pub(super) fn check(cache: &Cache, progress: &mut dyn FnMut(BuildStep)) -> Result<Self, LinkError> {
         let (target, list) = (cache.target(), cache.folder().join(LIST));
         let text = fs::read_to_string(&list).unwrap_or_default();

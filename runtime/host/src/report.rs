@@ -108,8 +108,8 @@ impl<'a> ReportWriter<'a> {
         }
     }
 
-    /// Reports that `plan` has replaced another plan for the reason `reason`, and drives the robot from the turn at
-    /// time `t` on, beginning with the atom `atom`.
+    /// Reports that `plan` has replaced another plan in the turn at time `t`, with the reason for the replacement and
+    /// the plan's current atom, `atom`. Prints nothing if `atom` is `None`, because the plan has then ended already.
     pub(crate) fn begins(&mut self, plan: &dyn Texts, t: Nanos, atom: Option<u32>, reason: &str) {
         self.course = RunCourse { since: reason.to_owned(), ..RunCourse::default() };
         self.over = None;

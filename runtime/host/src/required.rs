@@ -123,7 +123,8 @@ fn ends_plan(fsm: Fsm<'_>, scope: u32) -> bool {
     })
 }
 
-/// Returns the message that the plan cannot end by this cause. The message lists the causes by which the plan can end.
+/// Returns the error message for `--require text` if the plan cannot end by the cause `text`. The message lists the
+/// causes by which the plan can end.
 fn refused(plan: &dyn Texts, text: &str) -> String {
     let source = plan.source();
     let mut known: Vec<String> = Vec::new();

@@ -13,7 +13,8 @@ pub(crate) struct Supervised {
     limited: Option<LimitedQuantity>,
     /// Reason why another plan has replaced the plan in this turn; `None` if the plan was not replaced.
     pub(crate) begins: Option<String>,
-    /// Requests that were fulfilled before the turn.
+    /// Requests to the supervisor, for example from an operator, that it carried out between the previous turn and
+    /// this turn.
     pub(crate) requests: Vec<String>,
     /// Rule that replaced the plan last; empty if no rule has replaced it, or if a user has replaced the plan since.
     pub(crate) diverted_by: String,
@@ -40,7 +41,7 @@ impl Supervised {
         }
     }
 
-    /// Returns the intervention; `None` if there was no intervention.
+    /// Returns the supervisor's intervention in the turn; `None` if the supervisor did not intervene.
     pub(crate) fn intervention(&self) -> Option<Intervention<'_>> {
         self.verdict.map(|verdict| Intervention { verdict, rule: &self.rule, limited: self.limited })
     }

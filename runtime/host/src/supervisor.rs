@@ -191,7 +191,8 @@ impl<B: Pilot> fmt::Debug for Break<'_, B> {
 /// Changes to a run that a supervisor requests at a break.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BreakOrders {
-    /// Pace of stepped time from now on; ignored for the wall clock.
+    /// New pace of a run in stepped time, which is independent of the wall clock; `None` if the pace does not change.
+    /// The pace has no effect on a run that follows the wall clock.
     pub pace: Option<Pace>,
     /// `true` if the run has to end: the robot is stopped, and the exit status is 0.
     pub end: bool,

@@ -214,7 +214,7 @@ impl Reader {
         self.bytes.get(HEAD - 1).copied().map_or(0, usize::from)
     }
 
-    /// Returns the packet whose end has been read.
+    /// Parses the stored bytes as a complete packet. Fails if the length or the checksum is wrong.
     fn packet(&self) -> Result<Packet<'_>, Garbled> {
         let whole = self.bytes.get(..self.count).unwrap_or_default();
         let [checked @ .., check_byte] = whole else { return Err(Garbled::Length(0, 0)) };

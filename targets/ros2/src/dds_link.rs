@@ -28,7 +28,9 @@ const REJOINS: u32 = 2;
 /// Minimum time without a turn after which the middleware may have dropped the robot, or the robot may have dropped
 /// this program. CycloneDDS and RustDDS drop a program that is silent for 10 s; other middleware drops it later.
 const FORGOTTEN: Duration = Duration::from_secs(8);
-/// Maximum number of new participants with which the driver tries to stop a robot that may have been dropped.
+/// Maximum number of new DDS participants that the driver creates one after the other in order to stop the robot. A
+/// new participant is necessary if the program was suspended for at least `FORGOTTEN`, and also if it is suspended
+/// again during the stop.
 const ATTEMPTS: u32 = 3;
 
 /// The readers of a participant, each with its topic.
@@ -41,7 +43,8 @@ pub struct DdsLink {
     commands: Commands,
     /// Earlier participants, which still publish the state of the plan.
     earlier: Vec<(Participant, Readers, Commands)>,
-    /// Number of subscribers of velocity commands at the last command before a suspension.
+    /// Number of subscribers of velocity commands when the driver last commanded a velocity. The number is kept while
+    /// `may_be_forgotten` is `true`, so that a new participant knows how many subscribers it has to find.
     subscribers: i32,
     /// Time of the last command or check for messages.
     active: Instant,

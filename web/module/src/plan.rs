@@ -15,7 +15,7 @@ use crate::draft::PageFiles;
 pub(crate) struct Plan {
     /// The plan as a state machine.
     pub(crate) machine: Arc<fsm::Machine>,
-    /// Texts of the plan.
+    /// Texts of the plan's files and of the files of the robot's alphabet, to which the spans in `machine` refer.
     pub(crate) sources: Sources,
     /// Paths of the plan's files, without `.` and `..`.
     pub(crate) files: BTreeMap<SourceId, String>,

@@ -167,8 +167,8 @@ impl Condition {
         Self::stuck(quark, 1)
     }
 
-    /// Returns the quark and the nanoseconds of a condition `stuck T` or `rendezvous R`, which consists of a quark and
-    /// a timer; `None` for any other condition.
+    /// Returns the quark and the duration of the timer, in nanoseconds, if this is the condition of `stuck T` or
+    /// `rendezvous R`: an AND of a quark and its timer. Returns `None` for any other condition.
     #[must_use]
     pub fn lasting(&self) -> Option<(QuarkId, u64)> {
         let Self::And(operands) = self else { return None };

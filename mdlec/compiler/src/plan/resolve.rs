@@ -89,7 +89,7 @@ enum Uses {
     Copy,
 }
 
-/// The frame of an element.
+/// Coordinate frame of an element, as set by the `FRAME` of the element and those of the enclosing elements.
 #[derive(Clone, Copy)]
 struct Framing {
     /// Sum of the angles by which the frame is turned, in radians, relative to the innermost `FRAME here`.

@@ -1,4 +1,5 @@
-//! Infers the types of parameters that are declared without types. Reports each list of such parameters once.
+//! Infers the types of parameters that a plan declares without types, and reports one error for each list of such
+//! parameters.
 
 use std::collections::BTreeSet;
 

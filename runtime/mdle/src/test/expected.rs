@@ -67,7 +67,7 @@ pub(super) enum ForbiddenState {
 pub(super) enum ExpectedEnd {
     /// The plan is over by this cause.
     By(String, NamedCause),
-    /// The plan is not over.
+    /// The plan is still running when the run ends.
     Running,
     /// A fault ends the run.
     Failed,

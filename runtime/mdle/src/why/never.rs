@@ -97,7 +97,8 @@ struct Door {
     first: Stay,
     /// Level of the outermost scope whose end would lead to the atom.
     level: u16,
-    /// Last turn of the latest period; `None` while the period continues.
+    /// Last turn of the latest period of consecutive turns in which the atom could have begun; `None` while this
+    /// period continues.
     last: Option<Stay>,
     /// The last turn in which there was an opportunity, and its moment.
     latest: (FactsOfTurn, PlanMoment),

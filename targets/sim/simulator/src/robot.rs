@@ -41,7 +41,7 @@ pub struct Simulated {
 /// Settings of a simulated robot, apart from its world.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Make {
-    /// The body.
+    /// Kind of body to simulate, such as [`model::Body::Scout`].
     pub body: model::Body,
     /// Parts of the body's model that are omitted.
     pub without: Vec<ModelPart>,

@@ -13,7 +13,7 @@ use crate::point::Point;
 
 /// Width of a picture, in pixels.
 const WIDTH: f64 = 960.0;
-/// Two widths, in pixels: of the labels to the left of a floor, and of the list of trips to its right.
+/// Width of the labels to the left of a drawn floor, and width of the list of trips to its right, in pixels.
 const SIDES: (f64, f64) = (40.0, 230.0);
 /// Maximum height of a floor, in pixels.
 const HIGH: f64 = 420.0;
