@@ -17,9 +17,9 @@ const BAND: std::ops::RangeInclusive<usize> = 93..=743;
 const FINE: usize = 4;
 /// Exponent of the whitening: 0 gives the plain correlation, 1 the phase transform.
 const WHITENING: f64 = 0.7;
-/// Ratio of the radius in equation 7 to the radius of the head. It is not 1, because the equation is exact only for
-/// high frequencies.
-const WIDER: f64 = 1.05;
+/// Difference between the radius in equation 7 and the radius of the head, in metres. It is not 0, because the equation
+/// is exact only for high frequencies.
+const WIDER: f64 = 0.009;
 /// Maximum delay that is considered, as a multiple of the maximum delay by equation 7.
 const MARGIN: f64 = 1.08;
 
@@ -50,7 +50,7 @@ impl Estimator {
     #[must_use]
     pub fn new(radius: f64) -> Self {
         let steps = f64::from(RATE) * FINE as f64;
-        let most = MARGIN * WIDER * radius / SPEED * (1.0 + FRAC_PI_2) * steps;
+        let most = MARGIN * (radius + WIDER) / SPEED * (1.0 + FRAC_PI_2) * steps;
         let part = |place: usize, of: usize| TAU * place as f64 / of as f64;
         let turn = |place| {
             let (sin, cos) = libm::sincos(part(place, LENGTH * FINE));
@@ -60,7 +60,7 @@ impl Estimator {
             window: (0..WINDOW).map(|place| (0.5 - 0.5 * libm::cos(part(place, WINDOW))) as f32).collect(),
             turns: (0..LENGTH * FINE).map(turn).collect(),
             most: (libm::ceil(most) as usize).clamp(1, LENGTH),
-            unit: SPEED / (WIDER * radius * steps),
+            unit: SPEED / ((radius + WIDER) * steps),
         }
     }
 
@@ -163,7 +163,7 @@ mod tests {
         let radius = 0.15;
         for late in [0, 7, 20, 35] {
             let Estimate { angle, ratio } = Estimator::new(radius).estimate(&delayed(late)).unwrap();
-            let delay = WIDER * radius * (angle + libm::sin(angle)) / SPEED * f64::from(RATE);
+            let delay = (radius + WIDER) * (angle + libm::sin(angle)) / SPEED * f64::from(RATE);
             assert!((delay - late as f64).abs() < 0.05 && ratio > 20.0, "{late}: {delay} {ratio}");
         }
     }

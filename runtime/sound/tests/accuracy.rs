@@ -91,3 +91,31 @@ fn noise_as_loud_as_speech_costs_estimates_in_a_room() {
         errs_at_most(Case { t60, distance: 2.0, kind: SoundKind::Speech, level: 0.0 }, degrees, part);
     }
 }
+
+/// Returns the mean error of the estimates for a source at this bearing in open air without noise, in degrees.
+fn bias(radius: f64, kind: SoundKind, bearing: i32) -> f64 {
+    let (sin, cos) = libm::sincos(f64::from(bearing).to_radians());
+    let source = SoundSource { at: (2.0 * cos, 2.0 * sin), kind, level: 0.0 };
+    let ears = Ears::new(SphericalHead::new(radius), SoundRoom::open(), &[source], 5);
+    let mut samples = Vec::new();
+    ears.with_noise(0.0).hear(&EarPose { at: (0.0, 0.0), heading: 0.0 }, WINDOWS * WINDOW, &mut samples);
+    let estimator = Estimator::new(radius);
+    let estimates = samples.chunks(WINDOW).skip(1).filter_map(|window| estimator.estimate(window));
+    let angles: Vec<f64> = estimates.filter(|estimate| estimate.ratio > 5.0).map(|estimate| estimate.angle).collect();
+    assert!(!angles.is_empty(), "{radius} {kind:?} {bearing}");
+    (angles.iter().sum::<f64>() / angles.len() as f64).to_degrees() - f64::from(bearing)
+}
+
+#[test]
+fn equation_7_fits_heads_of_many_radii() {
+    for radius in [0.07, RADIUS, 0.12, 0.15, 0.2, 0.3] {
+        for kind in [SoundKind::White, SoundKind::Speech] {
+            let biases = [10, 20, 40, 60, 80].map(|bearing| bias(radius, kind, bearing));
+            println!("{radius} m, {kind:?}: {biases:.1?}");
+            assert!(
+                biases.iter().zip([0.3, 0.6, 1.0, 1.3, 3.0]).all(|(bias, limit)| bias.abs() <= limit),
+                "{biases:?}"
+            );
+        }
+    }
+}
