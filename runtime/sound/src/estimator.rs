@@ -22,6 +22,8 @@ const WHITENING: f64 = 0.7;
 const WIDER: f64 = 0.009;
 /// Maximum delay that is considered, as a multiple of the maximum delay by equation 7.
 const MARGIN: f64 = 1.08;
+/// Minimum distance between two maxima of the correlation that belong to different sounds, in steps.
+const APART: usize = 12;
 
 /// Estimates the direction of a source, for a head with a given radius.
 #[derive(Debug, Clone)]
@@ -43,6 +45,8 @@ pub struct Estimate {
     pub angle: f64,
     /// Ratio of the maximum of the correlation to its root mean square.
     pub ratio: f64,
+    /// Ratio of the second highest local maximum of the correlation to its maximum; 0 if there is only one.
+    pub rival: f64,
 }
 
 impl Estimator {
@@ -91,7 +95,11 @@ impl Estimator {
             _ => 0.0,
         };
         let delay = best as f64 + vertex - self.most as f64;
-        Some(Estimate { angle: angle(delay * self.unit), ratio: 2.0 * peak / libm::sqrt(2.0 * square) })
+        Some(Estimate {
+            angle: angle(delay * self.unit),
+            ratio: 2.0 * peak / libm::sqrt(2.0 * square),
+            rival: rival(&correlation, best) / peak,
+        })
     }
 
     /// Returns one ear's spectrum in the band that the estimator uses.
@@ -125,6 +133,17 @@ impl Estimator {
         }
         both
     }
+}
+
+/// Returns the highest local maximum of the correlation that is apart from its maximum, which is at `best`; 0 if there
+/// is none.
+fn rival(correlation: &[f64], best: usize) -> f64 {
+    let triples = (1_usize..).zip(correlation.windows(3)).filter(|(place, _)| place.abs_diff(best) > APART);
+    let maximum = |(_, triple): (usize, &[f64])| match triple {
+        [before, here, after] if here >= before && here >= after => Some(*here),
+        [..] => None,
+    };
+    triples.filter_map(maximum).fold(0.0, f64::max)
 }
 
 /// Returns the value of a bin of the cross spectrum after whitening.
@@ -162,10 +181,26 @@ mod tests {
     fn a_delay_becomes_the_angle_of_equation_7() {
         let radius = 0.15;
         for late in [0, 7, 20, 35] {
-            let Estimate { angle, ratio } = Estimator::new(radius).estimate(&delayed(late)).unwrap();
+            let Estimate { angle, ratio, .. } = Estimator::new(radius).estimate(&delayed(late)).unwrap();
             let delay = (radius + WIDER) * (angle + libm::sin(angle)) / SPEED * f64::from(RATE);
             assert!((delay - late as f64).abs() < 0.05 && ratio > 20.0, "{late}: {delay} {ratio}");
         }
+    }
+
+    /// Returns the sum of two sounds, which the right ear hears later than the left ear by these numbers of samples.
+    /// The second sound has this multiple of the first one's amplitude.
+    fn two_sounds(late: [usize; 2], louder: f32) -> Vec<[f32; 2]> {
+        let [one, other] = late.map(delayed);
+        // The second sound is read backwards, so that its signal is not that of the first one.
+        let other = other.iter().rev().map(|[left, right]| [*right, *left]);
+        one.iter().zip(other).map(|(one, other)| [0, 1].map(|ear| one[ear] + louder * other[ear])).collect()
+    }
+
+    #[test]
+    fn another_sound_is_a_rival() {
+        let estimator = Estimator::new(0.15);
+        let rivals = [0.0, 0.5, 0.95].map(|louder| estimator.estimate(&two_sounds([5, 30], louder)).unwrap().rival);
+        assert!(rivals[0] < 0.3 && rivals[0] < rivals[1] && rivals[1] < rivals[2] && rivals[2] > 0.6, "{rivals:?}");
     }
 
     #[test]

@@ -27,7 +27,7 @@ impl Localizer {
         self.histogram.pass();
         self.silent = self.silent.map(|silent| silent + seconds);
         let estimate = self.estimator.estimate(samples)?;
-        if !self.gate.keeps(estimate.ratio, seconds) {
+        if !self.gate.keeps(&estimate, seconds) {
             return None;
         }
         self.histogram.take(estimate.angle, heading);
