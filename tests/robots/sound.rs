@@ -167,7 +167,8 @@ fn a_plan_goes_on_after_its_sound() {
     }
     writer.finalize().unwrap();
     let output = run(&folder, "--world hall --ears noise.wav");
-    assert!(refusal(&output).starts_with("[0] ") && refusal(&output).contains("module `heading` has ended"));
+    let told = "module `heading` makes no further turn: the sound of the file has ended";
+    assert!(refusal(&output).starts_with("[0] ") && refusal(&output).contains(told), "{}", refusal(&output));
     assert!(String::from_utf8_lossy(&output.stdout).contains("plan over: wait 60s"), "{output:?}");
     let plan = fs::read_to_string(folder.join("sound_following.mdle")).unwrap();
     let ends = plan.replace("wait 60s", "wait 60s OR age(heading module) > 2s");

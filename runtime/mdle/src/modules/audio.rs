@@ -67,22 +67,22 @@ impl AudioSource {
 }
 
 impl Audio {
-    /// Removes and returns the samples up to the time `until`; `None` after the end of a file.
+    /// Removes and returns the samples up to the time `until`.
     ///
     /// # Errors
-    /// Fails with a message if the recorder has ended.
-    pub(super) fn take(&mut self, until: Nanos) -> Result<Option<Vec<[f32; 2]>>, String> {
+    /// Fails with a message if the file or the recorder has ended.
+    pub(super) fn take(&mut self, until: Nanos) -> Result<Vec<[f32; 2]>, String> {
         match self {
-            Self::Robot(microphones) => Ok(Some(microphones.take(until))),
+            Self::Robot(microphones) => Ok(microphones.take(until)),
+            Self::Wav(samples, taken) if *taken == samples.len() => Err("the sound of the file has ended".to_owned()),
             Self::Wav(samples, taken) => {
                 let end = u128::from(until.0) * u128::from(RATE) / 1_000_000_000;
                 let end = usize::try_from(end).unwrap_or(usize::MAX).min(samples.len());
-                let heard = samples.get(*taken..end).map(<[_]>::to_vec);
-                let is_over = *taken == samples.len();
+                let heard = samples.get(*taken..end).unwrap_or_default().to_vec();
                 *taken = end.max(*taken);
-                Ok(heard.filter(|_| !is_over))
+                Ok(heard)
             }
-            Self::Raw(recorder) => recorder.take().map(Some),
+            Self::Raw(recorder) => recorder.take(),
         }
     }
 }
@@ -253,9 +253,9 @@ mod tests {
         let samples: Vec<i16> = (1..=20).collect();
         let path = written("good.wav", 44_100, 2, &samples);
         let mut audio = AudioSource::open(&EarsOption::Wav(path)).unwrap().begin(&Microphones::default());
-        assert_eq!(audio.take(Nanos(50_000)), Ok(Some(vec![[1.0, 2.0], [3.0, 4.0]])));
-        assert_eq!(audio.take(Nanos(1_000_000_000)).unwrap().unwrap().len(), 8);
-        assert_eq!(audio.take(Nanos(1_100_000_000)), Ok(None));
+        assert_eq!(audio.take(Nanos(50_000)), Ok(vec![[1.0, 2.0], [3.0, 4.0]]));
+        assert_eq!(audio.take(Nanos(1_000_000_000)).unwrap().len(), 8);
+        assert_eq!(audio.take(Nanos(1_100_000_000)), Err("the sound of the file has ended".to_owned()));
     }
 
     #[test]

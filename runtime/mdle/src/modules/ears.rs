@@ -50,15 +50,15 @@ impl EarsModule {
         module
     }
 
-    /// Processes the sound of the turn that ended with the last turn break. Returns `false` after the end of the sound.
-    fn turn(&mut self, offer: &mut Offer<'_>) -> Result<bool, Fault> {
-        let (Some(Radians(theta)), now) = (offer.get(self.theta), offer.now()) else { return Ok(true) };
+    /// Processes the sound of the turn that ended with the last turn break. Fails after the end of the sound.
+    fn turn(&mut self, offer: &mut Offer<'_>) -> Result<(), Fault> {
+        let (Some(Radians(theta)), now) = (offer.get(self.theta), offer.now()) else { return Ok(()) };
         let before = self.headings.back().map_or(now, |(before, _)| *before);
         if self.headings.len() >= TURNS {
             self.headings.pop_front();
         }
         self.headings.push_back((now, theta));
-        let Some(heard) = self.audio.take(now).map_err(Fault)? else { return Ok(false) };
+        let heard = self.audio.take(now).map_err(Fault)?;
         let is_new = !heard.is_empty();
         self.samples.extend(heard);
         self.samples.drain(..self.samples.len().saturating_sub(WINDOW));
@@ -72,7 +72,7 @@ impl EarsModule {
             offer.publish(self.bearing, Radians(bearing - theta).wrapped());
             offer.publish(self.range, RANGE);
         }
-        Ok(true)
+        Ok(())
     }
 
     /// Returns the heading at a time, interpolated between two turns.
@@ -95,9 +95,7 @@ impl EarsModule {
 impl Background for EarsModule {
     fn run(mut self: Box<Self>, mut exchange: Exchange) -> Result<(), Fault> {
         while let Ok(turn) = exchange.exchange(|offer| self.turn(offer)) {
-            if !turn? {
-                break;
-            }
+            turn?;
         }
         Ok(())
     }
