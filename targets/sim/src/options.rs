@@ -54,8 +54,8 @@ fn of_the_world(command: Command) -> Command {
         )
         .arg(
             option("body", "ideal|scout|atrv").help("Body to simulate: exact, or with the errors of a real robot [default: ideal]").long_help(
-                "Body to simulate. `ideal` has exact sonars and odometry. `scout` and `atrv` have the sonars and wheels of \
-                 those robots, whose errors --seed draws [default: ideal]",
+                "Body to simulate. `ideal` has exact odometry and, without --seed, exact sonars. `scout` and `atrv` have \
+                 the sonars and wheels of those robots, whose errors --seed draws [default: ideal]",
             ),
         )
         .arg(
