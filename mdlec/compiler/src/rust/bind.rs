@@ -31,7 +31,7 @@ fn shared(alphabet: &Alphabet) -> String {
     let home = quote!(crate);
     let kinds = quarks.iter().map(|quark| &quark.kind);
     let functions = quarks.iter().map(|quark| from_arguments(quark, &quote!(#[must_use] pub)));
-    let purpose = format!("The quarks of the shared alphabet `{}` by their arguments.", alphabet.name);
+    let purpose = format!("Creates quarks of the shared alphabet `{}`.", alphabet.name);
     let text = file_text(quote! {
         use #home::{#(#kinds),*};
         use ::mdle_runtime as runtime;
