@@ -10,9 +10,12 @@ mod fleet;
 mod member;
 mod output;
 mod records;
+mod robot_plan;
 mod room;
 mod sent_plan;
 mod setup;
+mod setup_error;
+mod values;
 
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -33,7 +36,8 @@ pub use embedded::{run_scenario, scenario_files};
 use file::ScenarioError;
 use fleet::Fleet;
 use output::ScenarioOutput;
-use setup::{Scenario, SetupError};
+use setup::Scenario;
+use setup_error::SetupError;
 
 /// Exit status for a scenario with a failure, such as a file that could not be written.
 const FAULT: u8 = 3;

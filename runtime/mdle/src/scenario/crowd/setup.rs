@@ -12,7 +12,10 @@ use mdle_sim::{Make, Sim, Simulated};
 use super::super::arguments::ScenarioOptions;
 use super::super::file::{At, CrowdText, ScenarioError, ScenarioText, body, duration};
 use super::super::records::begin;
-use super::super::setup::{self, SetupError};
+use super::super::robot_plan;
+use super::super::setup::TIMEOUT;
+use super::super::setup_error::SetupError;
+use super::super::values::world;
 use super::alphabet::CrowdAlphabet;
 use super::member::Member;
 use super::places::{Places, hall};
@@ -54,7 +57,7 @@ impl CrowdSetup {
             let message = format!("a crowd has from 1 to {ROBOTS_MOST} robots");
             return Err(ScenarioError::at(crowd.robots.span(), message).into());
         }
-        let (plan, files) = setup::plan(&crowd.file, crowd.plan.as_ref(), from, None)?;
+        let (plan, files) = robot_plan::plan(&crowd.file, crowd.plan.as_ref(), from, None)?;
         check(&plan, crowd)?;
         let period = file.period.as_ref().map(|period| duration(period, 0.001, 1.0)).transpose()?;
         let period = period.unwrap_or(Sim::PERIOD);
@@ -67,7 +70,7 @@ impl CrowdSetup {
             plan,
             files,
             period: nanos(period),
-            timeout: nanos(options.timeout.or(timeout).unwrap_or(setup::TIMEOUT)),
+            timeout: nanos(options.timeout.or(timeout).unwrap_or(TIMEOUT)),
             threads: options.threads.unwrap_or_else(processors),
         })
     }
@@ -140,7 +143,7 @@ fn robots(
         return Err(ScenarioError::at(text.span(), message).into());
     }
     let world = match &file.world {
-        Some(_) => setup::world(file.world.as_ref(), from)?.0,
+        Some(_) => world(file.world.as_ref(), from)?.0,
         None => hall(count, spacing)?,
     };
     let mut places = Places::of(&world, spacing, seed.unwrap_or_default());
