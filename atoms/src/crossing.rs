@@ -7,6 +7,8 @@ use mdle_runtime::{Meters, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
 /// Minimum and maximum speed, in m/s, of a person who crosses the way. A slower object is treated as fixed, and faster
 /// echoes belong to different objects.
 const SPEEDS: [f64; 2] = [0.25, 2.0];
+/// Maximum ratio of the two speeds of one person. If one is greater, the echoes belong to different objects.
+const STEADY: f64 = 4.0;
 /// Maximum turn rate of the robot, in rad/s, between compared echoes: as the robot turns, the echo of a wall
 /// moves along the wall.
 const TURNS: f64 = 0.02;
@@ -114,7 +116,8 @@ fn comes<Y: DiffDrive + SonarRing>(
     let is_nearer = mean * (new.at - old.at) >= NEARER;
     let back = if is_far && seconds < BACK { (apart + CLEAR - new.along).max(0.0) } else { 0.0 };
     let crossing = Crossing { passed: seconds + apart / mean, back };
-    (moves(first) && is_nearer && meets).then_some(crossing)
+    let is_steady = first.max(second) <= STEADY * first.min(second);
+    (moves(first) && is_steady && is_nearer && meets).then_some(crossing)
 }
 
 #[cfg(test)]
@@ -149,6 +152,7 @@ mod tests {
         assert!(!waits([1.8, 1.8, 1.8]), "a wall");
         assert!(!waits([1.8, 2.3, 2.8]), "somebody who leaves");
         assert!(!waits([2.8, 2.8, 1.8]), "two different things");
+        assert!(!waits([2.8, 2.5, 1.2]), "two different things, the first a rough wall");
         assert!(!waits([6.0, 5.5, 5.0]), "somebody far away");
     }
 
