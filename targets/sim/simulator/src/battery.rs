@@ -1,5 +1,7 @@
 //! The battery. Driving and standby discharge it, a charger charges it, and its voltage falls with its charge.
 
+use std::sync::Arc;
+
 use mdle_runtime::{Supply, Volts};
 
 /// A battery and its consumers, in watts, joules and volts.
@@ -39,17 +41,18 @@ impl Pack {
 }
 
 /// A battery, with its current charge.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Battery {
-    pack: Pack,
+    /// Constants of the battery, which all robots with the same body share.
+    pack: Arc<Pack>,
     /// Charge, from 0 (empty) to 1 (full).
     charge: f64,
 }
 
 impl Battery {
     /// Creates a battery with this charge, from 0 to 1.
-    pub(crate) fn new(pack: Pack, charge: f64) -> Self {
-        Self { pack, charge: charge.clamp(0.0, 1.0) }
+    pub(crate) fn new(pack: impl Into<Arc<Pack>>, charge: f64) -> Self {
+        Self { pack: pack.into(), charge: charge.clamp(0.0, 1.0) }
     }
 
     /// Sets the charge, from 0 to 1.
@@ -60,7 +63,7 @@ impl Battery {
     /// Updates the charge after a time of `seconds`, in which the wheels have rolled `rolled` metres. `is_plugged` is
     /// `true` on the charger.
     pub(crate) fn passed(&mut self, seconds: f64, rolled: f64, is_plugged: bool) {
-        let Pack { capacity, standby, metre, charger, .. } = self.pack;
+        let Pack { capacity, standby, metre, charger, .. } = *self.pack;
         let given = if is_plugged { charger } else { 0.0 };
         self.charge = (self.charge + ((given - standby) * seconds - metre * rolled) / capacity).clamp(0.0, 1.0);
     }

@@ -139,6 +139,11 @@ impl Body {
         }
     }
 
+    /// Frees memory that is needed only during a turn.
+    pub(crate) fn release(&mut self) {
+        self.odometry.release();
+    }
+
     /// Brakes until the wheels are at rest.
     pub(crate) fn brake(&mut self, walls: &Walls) {
         self.advance(&Twist::default(), self.drive.fastest / self.drive.acceleration + STEP, walls);

@@ -19,8 +19,8 @@ pub struct Crowd {
     rows: usize,
     /// Index of the first entry of each cell, row by row; an additional last element marks the end of the entries.
     starts: Vec<u32>,
-    /// Numbers and footprints of the robots, ordered by the cells that contain their centres.
-    entries: Vec<(u32, Footprint)>,
+    /// Numbers of the robots, ordered by the cells that contain their centres.
+    entries: Vec<u32>,
 }
 
 /// Groups of robots. Robots of different groups cannot touch each other.
@@ -64,13 +64,9 @@ impl Crowd {
             *start = total;
         }
         let mut next = starts.clone();
-        let Some(first) = self.bodies.first() else {
-            self.starts = starts;
-            return;
-        };
-        let mut entries = vec![(0, *first); self.bodies.len()];
-        for ((cell, body), number) in cells.iter().zip(&self.bodies).zip(0..) {
-            entries[next[*cell] as usize] = (number, *body);
+        let mut entries = vec![0; self.bodies.len()];
+        for (cell, number) in cells.iter().zip(0..) {
+            entries[next[*cell] as usize] = number;
             next[*cell] += 1;
         }
         (self.starts, self.entries) = (starts, entries);
@@ -103,10 +99,11 @@ impl Crowd {
             let first = row * self.columns;
             // Adjacent cells of a row have adjacent entries.
             let (from, to) = (self.starts[first + left], self.starts[first + right + 1]);
-            for (number, body) in &self.entries[from as usize..to as usize] {
+            for number in self.entries[from as usize..to as usize].iter().map(|number| *number as usize) {
+                let body = &self.bodies[number];
                 let (x, y) = (body.pose.x.0 - at.x, body.pose.y.0 - at.y);
                 if x * x + y * y <= reach * reach {
-                    take(*number as usize, body);
+                    take(number, body);
                 }
             }
         }

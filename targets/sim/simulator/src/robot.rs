@@ -28,7 +28,8 @@ pub struct Simulated {
     /// Drift of the robot's odometry, measured at walls.
     compass: Compass,
     battery: Battery,
-    charger: Option<Charger>,
+    /// Charger of the world. It is on the heap, because few worlds have one.
+    charger: Option<Box<Charger>>,
     /// Recorded paths that the plan can replay.
     pub paths: PathStore,
     /// Number of bumper switches.
@@ -74,6 +75,10 @@ impl fmt::Display for Fault {
 
 impl std::error::Error for Fault {}
 
+fn nanos(period: Duration) -> Nanos {
+    Nanos(u64::try_from(period.as_nanos()).unwrap_or(u64::MAX))
+}
+
 impl Simulated {
     /// Creates a robot with an ideal body, at rest at `start` in `world`, where its odometry is zero. Its sonars are
     /// exact; if a random seed is given, they are noisy.
@@ -106,11 +111,11 @@ impl Simulated {
         Ok(Self {
             walls,
             body: Body::new(drive, start, make.seed),
-            ring: Ring::new(hearing, make.seed),
+            ring: Ring::new(hearing, make.seed, nanos(period)),
             shape: Arc::new(shape),
             compass: Compass::default(),
             battery: Battery::new(pack, 1.0),
-            charger: world.charger,
+            charger: world.charger.map(Box::new),
             paths: PathStore::EMPTY,
             switches,
             period,
@@ -127,10 +132,11 @@ impl Simulated {
         Ok(Self {
             walls: self.walls.clone(),
             body: self.body.another(start, seed),
-            ring: Ring::new(Arc::clone(&self.ring.hearing), seed),
+            ring: Ring::new(Arc::clone(&self.ring.hearing), seed, nanos(self.period)),
             shape: Arc::clone(&self.shape),
             compass: Compass::default(),
-            battery: self.battery,
+            battery: self.battery.clone(),
+            charger: self.charger.clone(),
             exchanges: 0,
             ..*self
         })
@@ -174,7 +180,7 @@ impl Simulated {
     /// (`None` if the world has no charger).
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.battery.charge(charge);
-        self.charger = charger;
+        self.charger = charger.map(Box::new);
     }
 
     /// Returns the battery and charger data that the robot measures.
@@ -184,7 +190,7 @@ impl Simulated {
     }
 
     fn is_plugged(&self) -> bool {
-        self.charger.is_some_and(|charger| charger.holds(&self.body.pose))
+        self.charger.as_ref().is_some_and(|charger| charger.holds(&self.body.pose))
     }
 
     /// Returns the area that the robot covers. Other robots detect and touch this area.
@@ -247,13 +253,12 @@ impl Simulated {
     /// Returns the time of the next exchange.
     #[must_use]
     pub fn now(&self) -> Nanos {
-        let period = u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX);
-        Nanos(self.exchanges.saturating_mul(period))
+        Nanos(self.exchanges.saturating_mul(nanos(self.period).0))
     }
 
     /// Drives for the period that ends at the time `now`. Each sonar pings when it is due.
     fn drive(&mut self, input: &Twist, now: Nanos) {
-        let begins = Nanos(now.0.saturating_sub(u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX)));
+        let begins = Nanos(now.0.saturating_sub(nanos(self.period).0));
         if self.exchanges == 0 {
             // The first exchange: the plan and the moving objects begin at the end of this period.
             self.body.advance(input, self.period.as_secs_f64(), &self.walls);
@@ -285,6 +290,8 @@ impl Simulated {
         }
         let standstill = Twist::default();
         self.drive(if self.battery.is_empty() { &standstill } else { input }, self.now());
+        self.body.release();
+        self.ring.release();
         if self.exchanges > 0 {
             let (is_plugged, seconds) = (self.is_plugged(), self.period.as_secs_f64());
             self.battery.passed(seconds, self.body.wheels() * seconds, is_plugged);

@@ -24,10 +24,13 @@ pub(crate) struct Ring {
     pub(crate) hearing: Arc<Hearing>,
     /// Latest ping of each transducer, with the range measured from the transducer itself; empty if every sonar has a
     /// single transducer.
-    pub(crate) heard: Vec<Heard>,
+    pub(crate) heard: Box<[Heard]>,
     errors: Option<SonarErrors>,
     /// Next group to ping, and the time of its ping; not used if all sonars ping in every turn.
     next: (usize, Nanos),
+    /// Unit of the times of stored pings: the time between two pings, or the duration of a turn if all sonars ping in
+    /// every turn.
+    tick: Nanos,
 }
 
 /// Last ping of a transducer; several transducers may belong to one sonar.
@@ -50,12 +53,13 @@ struct SonarErrors {
 }
 
 impl Ring {
-    /// Returns sonars with the errors of `seed`, or without errors.
-    pub(crate) fn new(hearing: impl Into<Arc<Hearing>>, seed: Option<u64>) -> Self {
+    /// Returns sonars with the errors of `seed`, or without errors. `period` is the duration of a turn.
+    pub(crate) fn new(hearing: impl Into<Arc<Hearing>>, seed: Option<u64>, period: Nanos) -> Self {
         let hearing = hearing.into();
         let errors = seed.map(|seed| {
             let mut outliers = Noise::of(seed, Purpose::Outliers);
             let scale = 1.0 + hearing.scale * (2.0 * outliers.uniform() - 1.0);
+            outliers.release();
             SonarErrors {
                 ranges: Noise::of(seed, Purpose::Ranges),
                 outliers,
@@ -64,13 +68,15 @@ impl Ring {
             }
         });
         let count = hearing.transducers.len();
-        let heard = vec![Heard::default(); if count > SONARS { count } else { 0 }];
-        Self { kept: KeptPings::EMPTY, hearing, heard, errors, next: (0, Nanos::ZERO) }
+        let heard = vec![Heard::default(); if count > SONARS { count } else { 0 }].into_boxed_slice();
+        let tick = hearing.order.as_ref().map_or(period, |order| order.gap);
+        let tick = Nanos(tick.0.max(1));
+        Self { kept: KeptPings::empty(hearing.step), hearing, heard, errors, next: (0, Nanos::ZERO), tick }
     }
 
     /// Returns the last pings of each sonar.
     pub(crate) fn pings(&self) -> [Pings; SONARS] {
-        self.kept.pings(&self.hearing)
+        self.kept.pings(&self.hearing, self.tick)
     }
 
     /// Returns the time of the next ping; `None` if all sonars ping in every turn.
@@ -122,6 +128,13 @@ impl Ring {
         self.hearing.order.as_ref()?.groups.get(group)?.get(place).copied()
     }
 
+    /// Frees memory that is needed only during a turn.
+    pub(crate) fn release(&mut self) {
+        if let Some(SonarErrors { ranges, outliers, fading, .. }) = &mut self.errors {
+            [ranges, outliers, fading].into_iter().for_each(Noise::release);
+        }
+    }
+
     /// Makes the sonars ping until each sonar has made as many pings as an output stores, as if the robot had been
     /// switched on some time before the plan began.
     pub(crate) fn warm_up(&mut self, pose: &Pose, odometry: Pose, walls: &Walls) {
@@ -141,8 +154,8 @@ impl Ring {
         // A sonar with several transducers has pinged when the last of them has pinged.
         let Some(sonar) = self.completed(number) else { return };
         let echo = if self.heard.is_empty() { range.map(|range| (range, number)) } else { self.nearest(sonar) };
-        let echo = echo.map(|(range, number)| (self.hearing.of_ring(range, number), number));
-        self.kept.push(sonar, echo, at, odometry);
+        let ticks = u32::try_from(at.0 / self.tick.0).unwrap_or(u32::MAX);
+        self.kept.push(sonar, echo, ticks, odometry, self.hearing.step);
     }
 
     /// Returns the sonar to which this transducer belongs; `None` if another transducer of the same sonar pings later

@@ -34,9 +34,17 @@ impl Odometry {
             let way = 1.0 + slip.way * noise.normal();
             let turn = 1.0 + slip.turn * noise.normal();
             let bend = slip.bend * noise.normal();
+            noise.release();
             OdometryErrors { noise, way, turn, bend, wander: slip.wander }
         });
         Self { pose: Pose::ORIGIN, errors }
+    }
+
+    /// Frees memory that is needed only during a turn.
+    pub(crate) fn release(&mut self) {
+        if let Some(errors) = &mut self.errors {
+            errors.noise.release();
+        }
     }
 
     /// Records that the wheels have rolled along an arc with the length `way` and the angle `turn`.

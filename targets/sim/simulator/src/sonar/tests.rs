@@ -6,13 +6,16 @@ use super::*;
 use crate::model::{Body, Model, ModelPart};
 use crate::world::World;
 
+/// Duration of a turn.
+const PERIOD: Nanos = Nanos(100_000_000);
+
 fn walls(text: &str) -> Walls {
     Walls::of(&World::parse("walls", text).expect("good walls"))
 }
 
 /// Returns a ring without errors that has pinged at the origin, once or in its firing order.
 fn pinged(body: Body, without: &[ModelPart], text: &str) -> Ring {
-    let mut ring = Ring::new(Model::of(body, without).hearing, None);
+    let mut ring = Ring::new(Model::of(body, without).hearing, None, PERIOD);
     let walls = walls(text);
     match ring.due() {
         Some(_) => ring.warm_up(&Pose::ORIGIN, Pose::ORIGIN, &walls),
@@ -72,7 +75,7 @@ fn nothing_within_range_is_no_echo() {
 #[test]
 fn a_seed_makes_the_noise_that_it_says_it_does() {
     let hearing = Model::of(Body::Ideal, &[]).hearing;
-    let mut ring = Ring::new(hearing.clone(), Some(5));
+    let mut ring = Ring::new(hearing.clone(), Some(5), PERIOD);
     let (mut errors, mut missed) = (Vec::new(), 0);
     for _ in 0..20_000 {
         match ring.errors.as_mut().expect("seeded").of(Some(1.81), &hearing) {
@@ -186,7 +189,7 @@ fn ranges_come_in_whole_inches_from_six_on() {
 
 #[test]
 fn a_scout_pings_in_its_order_sixty_milliseconds_apart() {
-    let mut ring = Ring::new(Model::of(Body::Scout, &[]).hearing, None);
+    let mut ring = Ring::new(Model::of(Body::Scout, &[]).hearing, None, PERIOD);
     let walls = walls("[[wall]]\npoints = [[-1, 2], [1, 2]]");
     let mut pinged = Vec::new();
     for ping in 0..17 {
