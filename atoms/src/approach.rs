@@ -32,7 +32,7 @@ const ACROSS: f64 = 0.25;
 const TURNS: f64 = 0.02;
 
 /// An echo: its position in odometry coordinates, and its time.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Echo {
     at: Nanos,
     /// Position of the echo; the heading is the direction of the sonar's axis.
@@ -51,7 +51,9 @@ struct Relative {
 /// The last echoes ahead, newest first. Between them there was no ping without an echo.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Approach {
-    heard: [Option<Echo>; KEPT],
+    heard: [Echo; KEPT],
+    /// Number of stored echoes.
+    count: u8,
 }
 
 impl Approach {
@@ -60,18 +62,24 @@ impl Approach {
     pub(crate) fn take<Y: SonarRing>(&mut self, y: &Y, here: Pose, way: Radians) {
         let Some(sonar) = looking(here, way) else { return };
         let Some(ping) = y.pings(sonar).newest_first().next() else { return };
-        if self.heard[0].is_some_and(|newest| ping.at.since(newest.at) < APART) {
+        if self.stored().next().is_some_and(|newest| ping.at.since(newest.at) < APART) {
             return;
         }
         let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
         let looked = Radians(axis.0 - way.0).wrapped().0.abs() <= AHEAD.0;
         let Some(range) = ping.range.filter(|_| looked) else {
-            self.heard = Default::default();
+            self.count = 0;
             return;
         };
         let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
         self.heard.rotate_right(1);
-        self.heard[0] = Some(Echo { at: ping.at, place });
+        self.heard[0] = Echo { at: ping.at, place };
+        self.count = (self.count + 1).min(KEPT as u8);
+    }
+
+    /// Returns the stored echoes, newest first.
+    fn stored(&self) -> impl Iterator<Item = &Echo> {
+        self.heard.iter().take(self.count.into())
     }
 
     /// Returns the time, in seconds, from the newest echo until an approaching person reaches the robot; `None` if no
@@ -80,7 +88,7 @@ impl Approach {
     /// Fixed obstacles are not reported, because their echoes stay at the same position.
     pub(crate) fn seconds(&self, here: Pose, way: Radians, in_turn: bool) -> Option<f64> {
         let (sin, cos) = libm::sincos(way.0);
-        let mut heard = self.heard.iter().flatten().map(|Echo { at, place }| {
+        let mut heard = self.stored().map(|Echo { at, place }| {
             let (x, y) = (place.x.0 - here.x.0, place.y.0 - here.y.0);
             Relative { at: *at, axis: place.theta, along: x * cos + y * sin, across: y * cos - x * sin }
         });
