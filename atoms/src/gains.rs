@@ -38,10 +38,8 @@ pub(crate) struct Gains {
     /// `goAvoid`: distance to keep around the body where there is room, in metres. Where sonars fire in turn,
     /// odometry drifts too, so the robot must keep to the middle of a hallway by its ranges.
     pub(crate) soft_margin: f64,
-    /// `goAvoid`: distance along a way, in metres, at which the room beside it is measured. Beside a wall, only the
-    /// room further ahead distinguishes a way that leads away from the wall from a way that stays close to it: if the
-    /// room were measured beside the robot, the robot would never correct its drift. A wide body that measured the room
-    /// too far ahead would turn back before a gap that it can just pass.
+    /// `goAvoid`: distance along a way, in metres, at which the room beside it is measured if the way is not free for
+    /// long. A wide body that measured the room too far ahead would turn back before a gap that it can just pass.
     pub(crate) room_at: f64,
     /// `goAvoid`: distance beyond the end of a way, in metres, within which an obstacle is still treated as beside the
     /// way. With 0, the robot comes as near to a wall ahead as the look-ahead permits. A wide body has a larger value,

@@ -48,6 +48,12 @@ const TURNED_MOST: Radians = Radians::from_degrees(215.0);
 const ROUNDING: f64 = 1e-9;
 /// Maximum length of a free way, in metres; a longer free way is no better.
 const FREE_MOST: f64 = 3.0;
+/// Distance along a way, in metres, at which the room beside it is measured if the way is free for at least `LONG`.
+/// Beside a wall, only the room further ahead distinguishes a way that leads away from the wall from a way that stays
+/// close to it: if the room were measured beside the robot, the robot would not return to the middle of a hallway.
+const ROOM_AT: f64 = 0.6;
+/// Free length of a way, in metres, from which no gap that the body can just pass is immediately ahead.
+const LONG: f64 = 1.0;
 /// Minimum and maximum distance along the way, in metres, of the points that are treated as beside the way; behind the
 /// robot, the distance is negative.
 const BESIDE: (f64, f64) = (-0.05, 0.9);
@@ -186,13 +192,13 @@ impl Obstacles {
         Meters(free)
     }
 
-    /// Returns the distance, in metres, from a place on the way in this direction to the nearest point beside the way;
-    /// infinite if there is no such point.
+    /// Returns the distance, in metres, from the place `room_at` metres along the way in this direction, or from the
+    /// end of the way, to the nearest point beside the way; infinite if there is no such point.
     ///
     /// A point at which the way ends, after its `free` length, is not treated as beside it, except for a wide body.
-    fn beside(&self, axis: Axis, free: Meters) -> f64 {
+    fn beside(&self, axis: Axis, free: Meters, room_at: f64) -> f64 {
         let (back, ahead) = (BESIDE.0, BESIDE.1.min(free.0 + self.gains.beyond));
-        let place = self.gains.room_at.min(free.0).max(0.0);
+        let place = room_at.min(free.0).max(0.0);
         let mut least = f64::INFINITY;
         for (along, across) in self.along(axis) {
             // A quick check skips most points, which lie further away along one axis alone.
@@ -239,7 +245,8 @@ impl Obstacles {
         if cost + turns > best + ROUNDING {
             return None;
         }
-        let beside = self.beside(axis, free);
+        let room_at = if free.0 >= LONG { ROOM_AT } else { self.gains.room_at };
+        let beside = self.beside(axis, free, room_at);
         let soft = if wish.close { 0.0 } else { self.soft };
         if beside < soft {
             cost += CLOSE_COSTS * (soft - beside) / (soft - self.close);

