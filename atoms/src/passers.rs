@@ -22,6 +22,9 @@ const SURE: u32 = 5;
 /// Minimum time, in seconds, for which the robot stands still for a person who is about to cross its way; it stands
 /// still at least until the person should have passed.
 const STANDS: f64 = 2.5;
+/// Distance, in metres, from the place where the robot last backed off, within which it does not back off again: a wall
+/// that it mistook for a person whenever it passed would hold it there for ever.
+const ONCE: f64 = 0.5;
 /// Minimum free length of the way behind a robot that backs off.
 const BEHIND: Meters = Meters(0.25);
 
@@ -37,6 +40,10 @@ pub(crate) struct Passers {
     /// Pose at which the robot last detected the crossing person, and the distance, in metres, by which the robot backs
     /// off from there.
     back: (Pose, f64),
+    /// Pose at which the robot last began to back off.
+    backed: Option<Pose>,
+    /// `true` if the robot may back off from the person for whom it stops.
+    may_back: bool,
 }
 
 /// The side to which the robot gives way to an approaching person, and the time until which it does so.
@@ -54,6 +61,8 @@ impl Default for Passers {
             crossed: 0,
             stands_until: Nanos::ZERO,
             back: (Pose::ORIGIN, 0.0),
+            backed: None,
+            may_back: true,
         }
     }
 }
@@ -76,8 +85,15 @@ impl Passers {
         let person = crosses(y, here, speed.0);
         self.crossed = if person.is_some() { self.crossed.saturating_add(1) } else { 0 };
         if let Some(person) = person.filter(|_| self.crossed >= SURE) {
+            if !self.stops(t) {
+                self.may_back = self.backed.is_none_or(|place| here.distance(&place).0 > ONCE);
+            }
             self.stands_until = self.stands_until.max(after(t, person.passed.max(STANDS)));
-            self.back = (here, person.back);
+            let back = if self.may_back { person.back } else { 0.0 };
+            self.back = (here, back);
+            if back > 0.0 {
+                self.backed = Some(here);
+            }
         }
     }
 

@@ -154,3 +154,19 @@ fn the_robot_backs_off_from_a_person_who_crosses() {
     y.pose.x = Meters(-0.3);
     assert_eq!(speed(&y), 0.0, "far enough");
 }
+
+/// The corner of a wall may look like a person whenever the robot comes past it.
+#[test]
+fn the_robot_backs_off_once_from_one_place() {
+    let mut y = Sensed::default();
+    let mut law = quark(0.0, 50.0).begin(&y, begun());
+    for (minute, place, expected) in [(1, 0.0, -0.2), (2, 0.3, 0.0), (3, 0.6, -0.2)] {
+        let at = |seconds: u64| Nanos(1_000_000_000 * (60 * minute + seconds));
+        y.pose.x = Meters(place);
+        for (second, range) in (0..).zip([2.1, 1.7, 1.2]) {
+            y.ping_at(mdle_runtime::SonarId::new(3), Some(range), at(second));
+        }
+        let last = (0..5).map(|turn| law.input(&y, Nanos(at(2).0 + turn * 100_000_000)).v.0).fold(0.0, |_, v| v);
+        assert_eq!(last, expected, "at {place} m");
+    }
+}
