@@ -11,6 +11,7 @@ use mdle_host::{Microphones, Pace, Pilot as _, PilotTurn, RunTerms, StopRequest,
 use mdle_record::{RecordedChange, RecordedTransition};
 use mdle_runtime::{Nanos, Robot as _, Sensed, Turn, Twist};
 use mdle_sim::{Simulated, World};
+use mdle_tests::chance::sized;
 
 use super::modules::{PERIOD, loaded};
 use super::odd_plans::{Odd, TURN};
@@ -80,12 +81,15 @@ fn live() -> Vec<Made> {
 
 #[test]
 fn late_turns_replay_to_the_bit() {
-    let turns = live();
+    (0..sized(2, 400)).for_each(|_| assert_replays(&live()));
+}
+
+fn assert_replays(turns: &[Made]) {
     let count = |kind: &RecordedChange| turns.iter().filter(|turn| turn.changes.contains(kind)).count();
     assert!(count(&RecordedChange::Late) >= 2 && count(&RecordedChange::Back) >= 2, "{turns:?}");
     assert!(turns.last().unwrap().outcome.3 >= 3, "{turns:?}");
     let mut again = engine(Time::Stepped(Pace::Max)).repeating(None);
-    for (number, Made { y, t, changes, outcome }) in (0..).zip(&turns) {
+    for (number, Made { y, t, changes, outcome }) in (0..).zip(turns) {
         for change in changes {
             if let RecordedChange::Armed { when, .. } = change {
                 again.plans_mut().replace(loaded(SECOND).plan(), When::of_number(*when).unwrap());

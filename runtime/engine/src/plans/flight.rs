@@ -97,13 +97,15 @@ impl<A: EngineAlphabet> Flight<A> {
     }
 }
 
-/// Module that makes the turns of plans: in each turn, it makes the plan's turn that is stored on the desk.
+/// Module that makes the turns of plans: in each turn, it makes the plan's turn that is stored on the desk. A late turn
+/// that was made lies on the desk until the engine takes it back.
 pub(crate) struct PlanModule<A: Alphabet>(pub(crate) Arc<Desk<A>>);
 
 impl<A: EngineAlphabet> Module<A::Output> for PlanModule<A> {
     fn turn(&mut self, turn: &mut module::Turn<'_, A::Output>) -> Result<(), Fault> {
         let Self(desk) = self;
-        let Some(mut flight) = desk.lock().flight.take() else { return Ok(()) };
+        let unmade = desk.lock().flight.take_if(|flight| flight.turn.is_none());
+        let Some(mut flight) = unmade else { return Ok(()) };
         match catch_unwind(AssertUnwindSafe(|| {
             flight.fly(turn.y, turn.now, desk);
             flight
