@@ -70,9 +70,8 @@ pub struct Compass {
     drift: f64,
     /// Error of `drift`, in radians.
     error: f64,
-    /// Angle between the first walls and the axes of odometry, which is part of `drift`; 0 if the walls are treated as
-    /// parallel to these axes, and `None` before any wall is measured.
-    askew: Option<f64>,
+    /// `true` if the first walls were askew to the axes of odometry; `None` before any wall is measured.
+    is_askew: Option<bool>,
     /// Pose by odometry at the last output.
     last: Pose,
     /// Origin and direction of the axis along which the lines of the walls are measured; `None` while the robot does
@@ -88,7 +87,7 @@ impl Default for Compass {
         Self {
             drift: 0.0,
             error: AT_FIRST,
-            askew: None,
+            is_askew: None,
             last: Pose::ORIGIN,
             way: None,
             sides: [RegressionLine::default(); 2],
@@ -102,20 +101,22 @@ impl Compass {
     /// odometry, of one of the frame's axes.
     ///
     /// A frame is assumed to be parallel to the walls. However, if the first walls were not parallel to the axes of
-    /// odometry, only the drift since then is known, and only for frames along these axes; the result for any other
-    /// frame is 0.
+    /// odometry, the result is always 0: among furniture, what seemed to be the first wall often is none, and a drift
+    /// measured from it would be wrong by up to 40°.
     #[must_use]
     pub fn drift(&self, axis: Radians) -> Radians {
-        let (of_frame, askew) = (-off_quarter(axis.0), self.askew.unwrap_or(0.0));
-        let drift = self.drift - askew + of_frame;
-        let is_sound = of_frame.abs() < ALIGNED || askew == 0.0 && drift.abs() <= MOST.0;
-        Radians(if self.error <= BELIEVED && is_sound { drift } else { 0.0 })
+        let of_frame = -off_quarter(axis.0);
+        let drift = self.drift + of_frame;
+        let is_sound = of_frame.abs() < ALIGNED || drift.abs() <= MOST.0;
+        let is_known = self.error <= BELIEVED && self.is_askew != Some(true);
+        Radians(if is_known && is_sound { drift } else { 0.0 })
     }
 
     /// Updates the drift with the last pings and the odometry pose of a robot with this shape. Does nothing for a robot
-    /// whose sonars all ping in every turn, because its odometry is assumed not to drift.
+    /// whose sonars all ping in every turn, because its odometry is assumed not to drift, and nothing once the first
+    /// walls have proved askew.
     pub fn take(&mut self, pings: &[Pings; SONARS], odometry: Pose, shape: &Shape) {
-        if shape.confirmation >= PINGS_KEPT {
+        if shape.confirmation >= PINGS_KEPT || self.is_askew == Some(true) {
             return;
         }
         let turned = Radians(odometry.theta.0 - self.last.theta.0).wrapped().0.abs();
@@ -133,14 +134,10 @@ impl Compass {
     /// odometry.
     fn measure(&mut self, drift: f64, error: f64) {
         let off = drift - self.drift;
-        if self.askew.is_none() {
-            let askew = if off.abs() <= ALONG_AXES { 0.0 } else { off };
-            (self.askew, self.drift) = (Some(askew), self.drift + askew);
-            // An axis askew to the walls is dropped: lines are measured along the walls from now on.
-            self.way = self.way.filter(|_| askew == 0.0);
+        if *self.is_askew.get_or_insert(off.abs() > ALONG_AXES) {
+            return;
         }
         let (ours, theirs) = (self.error * self.error, error * error);
-        let off = drift - self.drift;
         if off.abs() <= GATE * libm::sqrt(ours + theirs) {
             self.drift += off * ours / (ours + theirs);
             self.error = libm::sqrt(ours * theirs / (ours + theirs)).max(error.min(self.error));
@@ -157,7 +154,7 @@ impl Compass {
         if self.way.is_some() {
             return self.way;
         }
-        let off = self.askew.map_or(0.0, |_| off_quarter(odometry.theta.0 - self.drift));
+        let off = self.is_askew.map_or(0.0, |_| off_quarter(odometry.theta.0 - self.drift));
         let axis = Radians(odometry.theta.0 - off);
         if !heads_along(axis) {
             return None;
@@ -221,7 +218,7 @@ impl Compass {
     fn faces(&mut self, pings: &[Pings; SONARS], odometry: Pose, apart: Meters) {
         let newest = pings.iter().filter_map(|pings| pings.newest_first().next()).map(|ping| ping.at).max();
         let Some(newest) =
-            newest.filter(|newest| newest.since(self.judged) >= AGAIN && self.error > THREE && self.askew.is_some())
+            newest.filter(|newest| newest.since(self.judged) >= AGAIN && self.error > THREE && self.is_askew.is_some())
         else {
             return;
         };

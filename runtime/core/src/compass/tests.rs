@@ -65,27 +65,15 @@ fn walls_on_both_sides_tell_how_far_the_heading_is_off() {
     }
 }
 
-/// A plan that begins 20 degrees off the walls keeps its heading in the room, and measures the later drift of
-/// odometry.
+/// A plan may begin at any angle to the walls. Measurements in such a room are not used, because among furniture many
+/// of them are not of a wall.
 #[test]
-fn walls_askew_to_the_first_heading_are_no_drift() {
-    let mut trial = Trial::new();
-    trial.drives(20.0, 4.0, 0.0);
-    assert!(trial.drift(0.0).abs() < 0.1, "{}", trial.drift(0.0));
-    trial.drives(24.0, 6.0, 0.0);
-    assert!((trial.drift(0.0) - 4.0).abs() < 1.5, "{}", trial.drift(0.0));
-    assert_eq!(trial.drift(30.0), 0.0, "of a frame that is not along odometry's axes nothing is known");
-}
-
-/// Until a wall is measured, the angle between the walls and the first heading is unknown.
-#[test]
-fn walls_at_any_angle_to_the_first_heading_are_measured() {
-    for turned in [-40.0, 33.0, 45.0] {
+fn walls_askew_to_the_first_heading_measure_no_drift() {
+    for turned in [-40.0, 11.0, 20.0, 33.0, 45.0] {
         let mut trial = Trial::new();
         trial.drives(turned, 4.0, 0.0);
-        assert!(trial.drift(0.0).abs() < 0.1, "{turned}: {}", trial.drift(0.0));
         trial.drives(turned + 4.0, 6.0, 0.0);
-        assert!((trial.drift(0.0) - 4.0).abs() < 1.5, "{turned}: {}", trial.drift(0.0));
+        assert_eq!([0.0, 30.0].map(|axis| trial.drift(axis)), [0.0; 2], "{turned}");
     }
 }
 
