@@ -251,8 +251,11 @@ impl GoingRound {
         self.headed = self.headed.or((off < ON_THE_SPOT.0).then_some(t));
         let since = self.headed.map_or(Nanos::ZERO, |headed| t.since(headed));
         let stalled = self.progress.stalled(here, &self.goal, t).min(since);
+        let is_rectangle = y.body_radius() > y.half_length();
         if stalled < HELD_UP && !self.narrow.follows() {
-            return None;
+            // The corners of a rectangle swing into obstacles of which the tangent rule knows nothing.
+            let rounds = || self.narrow.round(y, here, chosen.direction, self.speed, self.winding);
+            return is_rectangle.then(rounds).flatten();
         }
         let goes_round = stalled.0 % (SQUEEZES.0 + GOES_ROUND.0) >= SQUEEZES.0;
         if self.passers.gives_way().is_some() || goes_round {

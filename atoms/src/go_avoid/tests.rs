@@ -141,6 +141,23 @@ fn the_turn_at_the_beginning_is_no_delay() {
     assert!(law.headed.is_none());
 }
 
+/// A wall 4 cm beside a rectangle is in the way of its corners, not in that of a disc.
+#[test]
+fn a_rectangle_looks_at_its_map_before_it_turns() {
+    let turns = |mut y: Sensed| {
+        let mut law = quark(90.0, 5.0).begin(&y, begun());
+        let mut turns = |turn: u64| {
+            y.now = Nanos(turn * 100_000_000);
+            y.ping_at(mdle_runtime::SonarId::new(12), Some(0.12), y.now);
+            law.input(&y, y.now).omega.0
+        };
+        (1..=5).map(&mut turns).fold(0.0, |_, omega| omega)
+    };
+    let atrv = turns(Sensed { confirmation: 2, ..sized(0.315, 0.27) });
+    assert!(atrv < 0.2, "{atrv}");
+    assert_eq!(turns(Sensed { confirmation: 2, ..Sensed::default() }), FASTEST);
+}
+
 /// A person who comes to within 1.4 m at 67.5° is 53 cm ahead: the robot would be touched where it stands.
 #[test]
 fn the_robot_backs_off_from_a_person_who_crosses() {
