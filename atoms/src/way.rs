@@ -31,7 +31,8 @@ pub(crate) struct Ahead {
     pub(crate) goal: Pose,
     /// Maximum distance from the goal at which the goal is treated as reached.
     pub(crate) near: Meters,
-    /// Reference distance from the goal; a way must end nearer to the goal.
+    /// Reference distance from the goal; a way must end nearer to the goal. Infinite if a way may lead anywhere off the
+    /// map.
     pub(crate) from: Meters,
     /// Direction that the tangent rule has chosen.
     pub(crate) chosen: Radians,
@@ -67,7 +68,8 @@ pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> 
     let mut wave = Wave::NONE;
     wave.start(map, &Ends { goal: *goal, near: ahead.near, from: ahead.from, base }, y);
     let way = Way { wave: &wave, here: index(CELLS / 2, CELLS / 2) };
-    if way.wave.left(way.here)? > libm::round(100.0 * (straight - base)) as i32 + LONGER {
+    let most = libm::round(100.0 * (straight - base)) as i32 + LONGER;
+    if way.wave.left(way.here)? > most && ahead.from.0.is_finite() {
         return None;
     }
     let is_disc = y.body_radius() <= y.half_length();
