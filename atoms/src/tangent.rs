@@ -116,6 +116,14 @@ pub(crate) enum Side {
 }
 
 impl Side {
+    /// Returns the opposite side.
+    pub(crate) fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+
     /// Converts an angle from the goal's direction to the equal angle that is measured towards this side: from 0 to 2π
     /// for the left, and from -2π to 0 for the right.
     fn counted(self, offset: f64) -> f64 {

@@ -158,6 +158,27 @@ fn a_rectangle_looks_at_its_map_before_it_turns() {
     assert_eq!(turns(Sensed { confirmation: 2, ..Sensed::default() }), FASTEST);
 }
 
+/// In a dead end whose ways all lead back, the robot drives back, and its detour changes sides.
+#[test]
+fn a_dead_end_is_left() {
+    let mut y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+    let mut law = quark(0.0, 5.0).begin(&y, begun());
+    for turn in 1..=200 {
+        y.now = Nanos(turn * 100_000_000);
+        for (number, range) in [(15, 0.3), (0, 0.25), (1, 0.3), (4, 0.2), (12, 0.2)] {
+            y.ping_at(mdle_runtime::SonarId::new(number), Some(range), y.now);
+        }
+        law.input(&y, y.now);
+        if turn == 140 {
+            law.detour = Some(Detour::begin(Side::Left, &law.goal, y.pose, Radians(0.0), y.now));
+        }
+    }
+    assert!(law.dwell.leaves());
+    assert_eq!(law.detour.map(|detour| detour.side), Some(Side::Right));
+    let v = law.input(&y, Nanos(20_100_000_000)).v;
+    assert!(v.0 < 0.0, "{v:?}");
+}
+
 /// A person who comes to within 1.4 m at 67.5° is 53 cm ahead: the robot would be touched where it stands.
 #[test]
 fn the_robot_backs_off_from_a_person_who_crosses() {
