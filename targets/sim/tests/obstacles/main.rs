@@ -69,14 +69,14 @@ fn a_corner_is_left() {
 fn the_room_of_the_simulator_is_crossed() {
     assert_clean("room", worlds::room, Body::Ideal, 90);
     assert_clean("room", worlds::room, Body::Scout, 80);
-    assert_clean("room", worlds::room, Body::Atrv, 80);
+    assert_clean("room", worlds::room, Body::Atrv, 85);
 }
 
 #[test]
 fn random_rooms_with_narrow_gaps_are_crossed() {
     assert_clean("random", worlds::random, Body::Ideal, 90);
     assert_clean("random", worlds::random, Body::Scout, 90);
-    assert_clean("random", worlds::random, Body::Atrv, 80);
+    assert_clean("random", worlds::random, Body::Atrv, 90);
 }
 
 #[test]
