@@ -147,6 +147,16 @@ fn the_legs_of_the_book_lead_there_and_back() {
 }
 
 #[test]
+fn the_plan_of_the_board_goes_there_and_back_twice() {
+    let shuttle = built("shuttle", &of_book("microcontroller.md", "shuttle.mdle"));
+    for (world, start) in [("hall", "1.5,5,0"), ("floor.toml", "6,5,200")] {
+        let run = run(&shuttle, &["--world", world, "--start", start]);
+        assert_eq!(legs(&run.relative(), 3.0, start), (2, 2), "from {start}");
+        assert!(run.lines.last().unwrap().contains(" s  plan over: completed"), "{:?}", run.lines);
+    }
+}
+
+#[test]
 fn a_frame_here_leads_ahead_and_back() {
     let ahead = built("ahead", &of_book("language.md", "ahead.mdle"));
     let round = run(&ahead, &["--world", "post.toml", "--start", "0,0,0"]).relative();

@@ -45,14 +45,14 @@ mod machine {
     const TURN_360: robot::Turn = robot::Turn::new(
         runtime::Radians::from_degrees(360.0),
     );
+    /// `turn -360`
+    const TURN_MINUS_360: robot::Turn = robot::Turn::new(
+        runtime::Radians::from_degrees(-360.0),
+    );
     /// `advance 1.4 20`
     const ADVANCE_1_4_20: robot::Advance = robot::Advance::new(
         runtime::Meters(1.4),
         runtime::MetersPerSecond(0.2),
-    );
-    /// `turn -360`
-    const TURN_MINUS_360: robot::Turn = robot::Turn::new(
-        runtime::Radians::from_degrees(-360.0),
     );
     /// `advance -1.4 20`
     const ADVANCE_MINUS_1_4_20: robot::Advance = robot::Advance::new(
@@ -114,26 +114,30 @@ mod machine {
         Idle,
         /// `(Atom (wait 40) turn 360)`
         Atom1(<robot::Turn as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 40) turn -360)`
+        Atom2(<robot::Turn as runtime::Control<Output>>::Law),
         /// `(Atom (wait 20) advance 1.4 20)`
-        Atom2(<robot::Advance as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 40) turn -360)`
-        Atom3(<robot::Turn as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 20) advance -1.4 20)`
-        Atom4(<robot::Advance as runtime::Control<Output>>::Law),
-        /// `(Atom (wait 10) rotate 90)`
-        Atom5(<robot::Rotate as runtime::Control<Output>>::Law),
-        /// `(Atom (y > 1.2 OR r0 < 0.4 OR wait 15) go 20 0)`
-        Atom6(<robot::Go as runtime::Control<Output>>::Law),
+        Atom3(<robot::Advance as runtime::Control<Output>>::Law),
         /// `(Atom (wait 40) turn 360)`
-        Atom7(<robot::Turn as runtime::Control<Output>>::Law),
-        /// `(Atom (y < -1.2 OR r8 < 0.4 OR wait 25) go -20 0)`
-        Atom8(<robot::Go as runtime::Control<Output>>::Law),
+        Atom4(<robot::Turn as runtime::Control<Output>>::Law),
         /// `(Atom (wait 40) turn -360)`
+        Atom5(<robot::Turn as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 20) advance -1.4 20)`
+        Atom6(<robot::Advance as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 10) rotate 90)`
+        Atom7(<robot::Rotate as runtime::Control<Output>>::Law),
+        /// `(Atom (y > 1.2 OR r0 < 0.4 OR wait 15) go 20 0)`
+        Atom8(<robot::Go as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 40) turn 360)`
         Atom9(<robot::Turn as runtime::Control<Output>>::Law),
-        /// `(Atom (y > 0 OR wait 15) go 20 0)`
+        /// `(Atom (y < -1.2 OR r8 < 0.4 OR wait 25) go -20 0)`
         Atom10(<robot::Go as runtime::Control<Output>>::Law),
+        /// `(Atom (wait 40) turn -360)`
+        Atom11(<robot::Turn as runtime::Control<Output>>::Law),
+        /// `(Atom (y > 0 OR wait 15) go 20 0)`
+        Atom12(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait 10) rotate 0)`
-        Atom11(<robot::Rotate as runtime::Control<Output>>::Law),
+        Atom13(<robot::Rotate as runtime::Control<Output>>::Law),
     }
 
     impl Running {
@@ -145,37 +149,45 @@ mod machine {
                 0 => *self = Running::Atom1(runtime::Control::begin(&TURN_360, y, begin)),
                 1 => {
                     *self = Running::Atom2(
-                        runtime::Control::begin(&ADVANCE_1_4_20, y, begin),
+                        runtime::Control::begin(&TURN_MINUS_360, y, begin),
                     );
                 }
                 2 => {
                     *self = Running::Atom3(
+                        runtime::Control::begin(&ADVANCE_1_4_20, y, begin),
+                    );
+                }
+                3 => *self = Running::Atom4(runtime::Control::begin(&TURN_360, y, begin)),
+                4 => {
+                    *self = Running::Atom5(
                         runtime::Control::begin(&TURN_MINUS_360, y, begin),
                     );
                 }
-                3 => {
-                    *self = Running::Atom4(
+                5 => {
+                    *self = Running::Atom6(
                         runtime::Control::begin(&ADVANCE_MINUS_1_4_20, y, begin),
                     );
                 }
-                4 => {
-                    *self = Running::Atom5(runtime::Control::begin(&ROTATE_90, y, begin));
+                6 => {
+                    *self = Running::Atom7(runtime::Control::begin(&ROTATE_90, y, begin));
                 }
-                5 => *self = Running::Atom6(runtime::Control::begin(&GO_20_0, y, begin)),
-                6 => *self = Running::Atom7(runtime::Control::begin(&TURN_360, y, begin)),
-                7 => {
-                    *self = Running::Atom8(
+                7 => *self = Running::Atom8(runtime::Control::begin(&GO_20_0, y, begin)),
+                8 => *self = Running::Atom9(runtime::Control::begin(&TURN_360, y, begin)),
+                9 => {
+                    *self = Running::Atom10(
                         runtime::Control::begin(&GO_MINUS_20_0, y, begin),
                     );
                 }
-                8 => {
-                    *self = Running::Atom9(
+                10 => {
+                    *self = Running::Atom11(
                         runtime::Control::begin(&TURN_MINUS_360, y, begin),
                     );
                 }
-                9 => *self = Running::Atom10(runtime::Control::begin(&GO_20_0, y, begin)),
-                10 => {
-                    *self = Running::Atom11(runtime::Control::begin(&ROTATE_0, y, begin));
+                11 => {
+                    *self = Running::Atom12(runtime::Control::begin(&GO_20_0, y, begin));
+                }
+                12 => {
+                    *self = Running::Atom13(runtime::Control::begin(&ROTATE_0, y, begin));
                 }
                 _ => *self = Running::Idle,
             }
@@ -225,7 +237,7 @@ mod machine {
                     }
                 }
                 Running::Atom2(law) => {
-                    if cursor.since(1u16, t) >= Nanos(20000000000) {
+                    if cursor.since(1u16, t) >= Nanos(40000000000) {
                         return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(2, 1, 2)),
@@ -239,7 +251,7 @@ mod machine {
                     }
                 }
                 Running::Atom3(law) => {
-                    if cursor.since(1u16, t) >= Nanos(40000000000) {
+                    if cursor.since(1u16, t) >= Nanos(20000000000) {
                         return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(3, 1, 2)),
@@ -253,46 +265,49 @@ mod machine {
                     }
                 }
                 Running::Atom4(law) => {
-                    if cursor.since(1u16, t) >= Nanos(20000000000) {
+                    if cursor.since(1u16, t) >= Nanos(40000000000) {
                         return Some(
                             runtime::Cause::Fired(1u16)
-                                .then(runtime::Follows::new(4, 1, 3)),
+                                .then(runtime::Follows::new(4, 1, 2)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(1u16)
-                                .then(runtime::Follows::new(4, 1, 3)),
+                                .then(runtime::Follows::new(4, 1, 2)),
                         );
                     }
                 }
                 Running::Atom5(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                    if cursor.since(1u16, t) >= Nanos(40000000000) {
                         return Some(
-                            runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(5, 2, 3)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(5, 1, 2)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
-                            runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(5, 2, 3)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(5, 1, 2)),
                         );
                     }
                 }
-                Running::Atom6(_) => {
-                    if runtime::Interrupt::fired(&Y_1_2, y)
-                        | runtime::Interrupt::fired(&R0_0_4, y)
-                        | (cursor.since(2u16, t) >= Nanos(15000000000))
-                    {
+                Running::Atom6(law) => {
+                    if cursor.since(1u16, t) >= Nanos(20000000000) {
                         return Some(
-                            runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(6, 2, 3)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(6, 1, 3)),
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return Some(
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(6, 1, 3)),
                         );
                     }
                 }
                 Running::Atom7(law) => {
-                    if cursor.since(2u16, t) >= Nanos(40000000000) {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(7, 2, 3)),
@@ -306,9 +321,9 @@ mod machine {
                     }
                 }
                 Running::Atom8(_) => {
-                    if runtime::Interrupt::fired(&Y_MINUS_1_2, y)
-                        | runtime::Interrupt::fired(&R8_0_4, y)
-                        | (cursor.since(2u16, t) >= Nanos(25000000000))
+                    if runtime::Interrupt::fired(&Y_1_2, y)
+                        | runtime::Interrupt::fired(&R0_0_4, y)
+                        | (cursor.since(2u16, t) >= Nanos(15000000000))
                     {
                         return Some(
                             runtime::Cause::Fired(2u16)
@@ -331,8 +346,9 @@ mod machine {
                     }
                 }
                 Running::Atom10(_) => {
-                    if runtime::Interrupt::fired(&Y_0, y)
-                        | (cursor.since(2u16, t) >= Nanos(15000000000))
+                    if runtime::Interrupt::fired(&Y_MINUS_1_2, y)
+                        | runtime::Interrupt::fired(&R8_0_4, y)
+                        | (cursor.since(2u16, t) >= Nanos(25000000000))
                     {
                         return Some(
                             runtime::Cause::Fired(2u16)
@@ -341,16 +357,40 @@ mod machine {
                     }
                 }
                 Running::Atom11(law) => {
-                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                    if cursor.since(2u16, t) >= Nanos(40000000000) {
                         return Some(
                             runtime::Cause::Fired(2u16)
-                                .then(runtime::Follows::new(11, 0, 0)),
+                                .then(runtime::Follows::new(11, 2, 3)),
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
                         return Some(
                             runtime::Cause::Completed(2u16)
-                                .then(runtime::Follows::new(11, 0, 0)),
+                                .then(runtime::Follows::new(11, 2, 3)),
+                        );
+                    }
+                }
+                Running::Atom12(_) => {
+                    if runtime::Interrupt::fired(&Y_0, y)
+                        | (cursor.since(2u16, t) >= Nanos(15000000000))
+                    {
+                        return Some(
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(12, 2, 3)),
+                        );
+                    }
+                }
+                Running::Atom13(law) => {
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                        return Some(
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(13, 0, 0)),
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return Some(
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(13, 0, 0)),
                         );
                     }
                 }
@@ -371,6 +411,8 @@ mod machine {
                 Running::Atom9(law) => runtime::Law::input(law, y, t),
                 Running::Atom10(law) => runtime::Law::input(law, y, t),
                 Running::Atom11(law) => runtime::Law::input(law, y, t),
+                Running::Atom12(law) => runtime::Law::input(law, y, t),
+                Running::Atom13(law) => runtime::Law::input(law, y, t),
             }
         }
         fn operands(
@@ -405,7 +447,7 @@ mod machine {
             | (cursor.since(0u16, t) >= Nanos(300000000000))
         {
             return Some(
-                runtime::Cause::Fired(0u16).then(runtime::Follows::new(11, 0, 0)),
+                runtime::Cause::Fired(0u16).then(runtime::Follows::new(13, 0, 0)),
             );
         }
         None
@@ -416,7 +458,9 @@ mod machine {
         conditions: &[
             runtime::Condition::Or(0, 2),
             runtime::Condition::Wait(Nanos(40000000000)),
+            runtime::Condition::Wait(Nanos(40000000000)),
             runtime::Condition::Wait(Nanos(20000000000)),
+            runtime::Condition::Wait(Nanos(40000000000)),
             runtime::Condition::Wait(Nanos(40000000000)),
             runtime::Condition::Wait(Nanos(20000000000)),
             runtime::Condition::Null,
@@ -484,59 +528,66 @@ mod machine {
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
-            Bracket::scope(0, 0, 10, 0),
+            Bracket::scope(0, 0, 12, 0),
             Bracket::scope(1, 0, 0, 0),
             Bracket::scope(1, 1, 1, 0),
             Bracket::scope(1, 2, 2, 0),
             Bracket::scope(1, 3, 3, 0),
-            Bracket::scope(1, 4, 10, 0),
-            Bracket::scope(2, 4, 4, 5),
-            Bracket::scope(2, 5, 5, 5),
-            Bracket::scope(2, 6, 6, 5),
-            Bracket::scope(2, 7, 7, 5),
-            Bracket::scope(2, 8, 8, 5),
-            Bracket::scope(2, 9, 9, 5),
-            Bracket::scope(2, 10, 10, 5),
+            Bracket::scope(1, 4, 4, 0),
+            Bracket::scope(1, 5, 5, 0),
+            Bracket::scope(1, 6, 12, 0),
+            Bracket::scope(2, 6, 6, 7),
+            Bracket::scope(2, 7, 7, 7),
+            Bracket::scope(2, 8, 8, 7),
+            Bracket::scope(2, 9, 9, 7),
+            Bracket::scope(2, 10, 10, 7),
+            Bracket::scope(2, 11, 11, 7),
+            Bracket::scope(2, 12, 12, 7),
         ],
         atoms: &[
             Atom::new(1, 1),
             Atom::new(2, 2),
             Atom::new(3, 3),
             Atom::new(4, 4),
-            Atom::new(6, 5),
-            Atom::new(7, 6),
+            Atom::new(5, 5),
+            Atom::new(6, 6),
             Atom::new(8, 7),
             Atom::new(9, 8),
             Atom::new(10, 9),
             Atom::new(11, 10),
             Atom::new(12, 11),
+            Atom::new(13, 12),
+            Atom::new(14, 13),
         ],
-        termination: 12,
+        termination: 14,
     };
     /// The quark text of each atom's law.
     const LAWS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
-            "turn 360", "advance 1.4 20", "turn -360", "advance -1.4 20", "rotate 90",
-            "go 20 0", "turn 360", "go -20 0", "turn -360", "go 20 0", "rotate 0"
+            "turn 360", "turn -360", "advance 1.4 20", "turn 360", "turn -360",
+            "advance -1.4 20", "rotate 90", "go 20 0", "turn 360", "go -20 0",
+            "turn -360", "go 20 0", "rotate 0"
         ],
-        &[8, 22, 31, 46, 55, 62, 70, 78, 87, 94, 102],
+        &[8, 17, 31, 39, 48, 63, 72, 79, 87, 95, 104, 111, 119],
     );
     /// The condition text of each bracket; empty for a loop.
     const CONDITIONS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
-            "bumper OR wait 300", "wait 40", "wait 20", "wait 40", "wait 20", "null",
-            "wait 10", "y > 1.2 OR r0 < 0.4 OR wait 15", "wait 40",
+            "bumper OR wait 300", "wait 40", "wait 40", "wait 20", "wait 40", "wait 40",
+            "wait 20", "null", "wait 10", "y > 1.2 OR r0 < 0.4 OR wait 15", "wait 40",
             "y < -1.2 OR r8 < 0.4 OR wait 25", "wait 40", "y > 0 OR wait 15", "wait 10"
         ],
-        &[18, 25, 32, 39, 46, 50, 57, 87, 94, 125, 132, 148, 155],
+        &[18, 25, 32, 39, 46, 53, 60, 64, 71, 101, 108, 139, 146, 162, 169],
     );
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: runtime::TextList<'static> = runtime::TextList::new(
         concat!["MapDrive", "BothSides"],
-        &[8, 8, 8, 8, 8, 17, 17, 17, 17, 17, 17, 17, 17],
+        &[8, 8, 8, 8, 8, 8, 8, 17, 17, 17, 17, 17, 17, 17, 17],
     );
     /// The frame of each atom that is inside a `FRAME here`.
     const HERE: &[Option<runtime::Here>] = &[
+        None,
+        None,
         None,
         None,
         None,
@@ -574,71 +625,77 @@ mod machine {
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["map.mdle"],
         brackets: &[
-            [0, 7, 0, 2],
-            [0, 8, 2, 1],
-            [0, 9, 3, 1],
-            [0, 10, 4, 1],
-            [0, 11, 5, 1],
-            [0, 12, 6, 1],
-            [0, 13, 7, 1],
-            [0, 14, 8, 3],
-            [0, 15, 11, 1],
-            [0, 16, 12, 3],
-            [0, 17, 15, 1],
-            [0, 18, 16, 2],
-            [0, 19, 18, 1],
+            [0, 8, 0, 2],
+            [0, 9, 2, 1],
+            [0, 10, 3, 1],
+            [0, 11, 4, 1],
+            [0, 12, 5, 1],
+            [0, 13, 6, 1],
+            [0, 14, 7, 1],
+            [0, 15, 8, 1],
+            [0, 16, 9, 1],
+            [0, 17, 10, 3],
+            [0, 18, 13, 1],
+            [0, 19, 14, 3],
+            [0, 20, 17, 1],
+            [0, 21, 18, 2],
+            [0, 22, 20, 1],
         ],
         conditions: runtime::TextList::new(
             concat![
-                "bumper OR wait 5min", "wait 40", "wait 20", "wait 40", "wait 20",
-                "null", "wait 10", "y > 1.2m OR r0 < 40cm OR wait 15", "wait 40",
+                "bumper OR wait 5min", "wait 40", "wait 40", "wait 20", "wait 40",
+                "wait 40", "wait 20", "null", "wait 10",
+                "y > 1.2m OR r0 < 40cm OR wait 15", "wait 40",
                 "y < -1.2m OR r8 < 40cm OR wait 25", "wait 40", "y > 0m OR wait 15",
                 "wait 10"
             ],
-            &[19, 26, 33, 40, 47, 51, 58, 90, 97, 130, 137, 154, 161],
+            &[19, 26, 33, 40, 47, 54, 61, 65, 72, 104, 111, 144, 151, 168, 175],
         ),
         operands: &[
-            [0, 7, 0, 0],
-            [0, 7, 0, 0],
+            [0, 8, 0, 0],
             [0, 8, 0, 0],
             [0, 9, 0, 0],
             [0, 10, 0, 0],
             [0, 11, 0, 0],
             [0, 12, 0, 0],
             [0, 13, 0, 0],
-            [0, 14, 0, 1],
-            [0, 14, 1, 1],
-            [0, 14, 2, 0],
-            [0, 15, 2, 0],
-            [0, 16, 2, 1],
-            [0, 16, 3, 1],
-            [0, 16, 4, 0],
-            [0, 17, 4, 0],
-            [0, 18, 4, 1],
-            [0, 18, 5, 0],
-            [0, 19, 5, 0],
+            [0, 14, 0, 0],
+            [0, 15, 0, 0],
+            [0, 16, 0, 0],
+            [0, 17, 0, 1],
+            [0, 17, 1, 1],
+            [0, 17, 2, 0],
+            [0, 18, 2, 0],
+            [0, 19, 2, 1],
+            [0, 19, 3, 1],
+            [0, 19, 4, 0],
+            [0, 20, 4, 0],
+            [0, 21, 4, 1],
+            [0, 21, 5, 0],
+            [0, 22, 5, 0],
         ],
         texts: runtime::TextList::new(
             concat![
-                "bumper", "wait 300", "wait 40", "wait 20", "wait 40", "wait 20", "null",
-                "wait 10", "y > 1.2", "r0 < 0.4", "wait 15", "wait 40", "y < -1.2",
-                "r8 < 0.4", "wait 25", "wait 40", "y > 0", "wait 15", "wait 10"
+                "bumper", "wait 300", "wait 40", "wait 40", "wait 20", "wait 40",
+                "wait 40", "wait 20", "null", "wait 10", "y > 1.2", "r0 < 0.4",
+                "wait 15", "wait 40", "y < -1.2", "r8 < 0.4", "wait 25", "wait 40",
+                "y > 0", "wait 15", "wait 10"
             ],
             &[
-                6, 14, 21, 28, 35, 42, 46, 53, 60, 68, 75, 82, 90, 98, 105, 112, 117,
-                124, 131,
+                6, 14, 21, 28, 35, 42, 49, 56, 60, 67, 74, 82, 89, 96, 104, 112, 119,
+                126, 131, 138, 145,
             ],
         ),
         written: runtime::TextList::new(
             concat![
-                "bumper", "wait 5min", "wait 40", "wait 20", "wait 40", "wait 20",
-                "null", "wait 10", "y > 1.2m", "r0 < 40cm", "wait 15", "wait 40",
-                "y < -1.2m", "r8 < 40cm", "wait 25", "wait 40", "y > 0m", "wait 15",
-                "wait 10"
+                "bumper", "wait 5min", "wait 40", "wait 40", "wait 20", "wait 40",
+                "wait 40", "wait 20", "null", "wait 10", "y > 1.2m", "r0 < 40cm",
+                "wait 15", "wait 40", "y < -1.2m", "r8 < 40cm", "wait 25", "wait 40",
+                "y > 0m", "wait 15", "wait 10"
             ],
             &[
-                6, 15, 22, 29, 36, 43, 47, 54, 62, 71, 78, 85, 94, 103, 110, 117, 123,
-                130, 137,
+                6, 15, 22, 29, 36, 43, 50, 57, 61, 68, 76, 85, 92, 99, 108, 117, 124,
+                131, 137, 144, 151,
             ],
         ),
         values: &[
