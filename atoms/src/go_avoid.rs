@@ -272,7 +272,7 @@ impl GoingRound {
         self.headed = self.headed.or((off < ON_THE_SPOT.0).then_some(t));
         let since = self.headed.map_or(Nanos::ZERO, |headed| t.since(headed));
         let stalled = self.progress.stalled(here, &self.goal, t).min(since);
-        let is_rectangle = y.body_radius() > y.half_length();
+        let is_rectangle = !y.is_disc();
         if stalled < HELD_UP && !self.narrow.follows() {
             // The corners of a rectangle swing into obstacles of which the tangent rule knows nothing.
             let rounds = || self.narrow.round(y, here, chosen.direction, self.speed, self.winding);

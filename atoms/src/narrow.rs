@@ -108,10 +108,9 @@ impl Narrow {
                 (self.way, self.found) = (way, t);
             }
         }
-        let is_disc = y.body_radius() <= y.half_length();
         let there = here.towards(ahead.chosen, AHEAD);
         let anyhow = Next { x: there.x.0, y: there.y.0, is_straight: false };
-        let next = self.way.or((!is_disc).then_some(anyhow))?;
+        let next = self.way.or((!y.is_disc()).then_some(anyhow))?;
         let is_bold = self.stands.is_some_and(|since| t.since(since) > STANDS);
         let twist = self.towards(y, here, next, (ahead.speed, ahead.winding), is_bold)?;
         self.stands = self.stands.or(Some(t)).filter(|_| twist.v.0 == 0.0);

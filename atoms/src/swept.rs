@@ -72,8 +72,7 @@ impl Surroundings {
     /// Returns the surroundings of the body at `here`.
     pub(crate) fn of<Y: DiffDrive>(y: &Y, map: &Map, here: Pose) -> Self {
         let (half_length, half_width) = (y.half_length().0, y.half_width().0);
-        let is_disc = y.body_radius().0 <= half_length;
-        let radius = if is_disc { half_length } else { ROUNDED };
+        let radius = if y.is_disc() { half_length } else { ROUNDED };
         let mut near = Self {
             points: [(0.0, 0.0); POINTS],
             count: 0,

@@ -72,8 +72,7 @@ pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> 
     if way.wave.left(way.here)? > most && ahead.from.0.is_finite() {
         return None;
     }
-    let is_disc = y.body_radius() <= y.half_length();
-    let (to, is_straight) = if is_disc { (way.ahead(), false) } else { way.beyond(map, ahead.before) };
+    let (to, is_straight) = if y.is_disc() { (way.ahead(), false) } else { way.beyond(map, ahead.before) };
     let corner = map.corner;
     let end = Cell::of(goal.x.0, goal.y.0);
     if map.contains(end) && to == index(end.x - corner.x, end.y - corner.y) {

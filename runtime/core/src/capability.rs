@@ -40,6 +40,10 @@ pub trait DiffDrive: Output {
     fn half_width(&self) -> Meters {
         self.body_radius()
     }
+    /// Returns `true` if the body is a disc, and `false` if it is a rectangle.
+    fn is_disc(&self) -> bool {
+        self.body_radius() <= self.half_length()
+    }
     /// Returns the distance between the wheels.
     fn wheel_base(&self) -> Meters;
     /// Returns the steering gains of the laws.
