@@ -7,8 +7,8 @@ use std::time::Duration;
 
 use mdle_host::clap::ArgMatches;
 use mdle_host::{Batch, Watch, WholeFile};
-use mdle_runtime::Pose;
-use mdle_simulator::{Goal, Make, PARTS, Simulated, Start, StartError, StartNoise, Walls, World};
+use mdle_runtime::{Meters, Pose};
+use mdle_simulator::{Form, Goal, Make, PARTS, Simulated, Start, StartError, StartNoise, Walls, World};
 
 use crate::observed::{Observed, Sounds};
 use crate::options;
@@ -70,9 +70,12 @@ impl Setup {
         let walls = Walls::of_any(&world).map_err(|what| format!("--world: {what}"))?;
         let given = options::start(matches)?;
         let Start(start) = given.map_or(Start(world.start), |(_, start)| start);
-        let with_option = |error: StartError| match given {
-            Some((text, _)) => format!("--start {text}: {error}; {}", hint(&world.start)),
-            None => format!("the world's own start pose: {error}; give another, as in `--start 1,2,90`"),
+        let with_option = |error: StartError| {
+            let hint = hint(&world, make.form(), &walls);
+            match given {
+                Some((text, _)) => format!("--start {text}: {error}; {hint}"),
+                None => format!("the world's own start pose: {error}; {hint}"),
+            }
         };
         mdle_simulator::check(&start, make.form(), &world, &walls).map_err(with_option)?;
         let noise = options::start_noise(matches)?;
@@ -107,9 +110,30 @@ impl Setup {
     }
 }
 
-/// Returns a hint for error messages, which is the default start pose of the world, written as an option.
-fn hint(start: &Pose) -> String {
-    // Degrees that were read from a file may have a rounding error in their last digit.
-    let degrees = libm::round(start.theta.degrees() * 1e6) / 1e6;
-    format!("the world's own start is `--start {},{},{degrees}`", start.x.0, start.y.0)
+/// Returns a hint for error messages: an option with the default start pose of the world or, if a robot of this form
+/// cannot stand there, with a pose near it.
+fn hint(world: &World, form: Form, walls: &Walls) -> String {
+    let fits = |pose: &Pose| mdle_simulator::check(pose, form, world, walls).is_ok();
+    let option = |Pose { x, y, theta }: Pose| {
+        // Degrees that were read from a file may have a rounding error in their last digit.
+        let degrees = libm::round(theta.degrees() * 1e6) / 1e6;
+        format!("`--start {},{},{degrees}`", x.0, y.0)
+    };
+    if fits(&world.start) {
+        return format!("the world's own start is {}", option(world.start));
+    }
+    match around(&world.start).find(fits) {
+        Some(pose) => format!("there is room at {}", option(pose)),
+        None => "there is no room within 2 m of the world's own start".to_owned(),
+    }
+}
+
+/// Returns poses with the heading of `start`, in steps of 10 cm up to 2 m from it along both axes, the nearest first.
+fn around(start: &Pose) -> impl Iterator<Item = Pose> {
+    let steps = (-20..=20).flat_map(|right: i32| (-20..=20).map(move |up: i32| (right, up)));
+    let mut steps: Vec<_> = steps.collect();
+    steps.sort_by_key(|(right, up)| right * right + up * up);
+    let moved = |from: Meters, step: i32| Meters(libm::round(100.0 * from.0 + 10.0 * f64::from(step)) / 100.0);
+    let start = *start;
+    steps.into_iter().map(move |(right, up)| Pose { x: moved(start.x, right), y: moved(start.y, up), ..start })
 }
