@@ -1,5 +1,6 @@
 //! Creates a single run, or a batch of runs with different seeds, from options that are checked before anything moves.
 
+use std::f64::consts::FRAC_PI_2;
 use std::num::NonZeroUsize;
 use std::sync::Arc;
 use std::thread::available_parallelism;
@@ -7,7 +8,7 @@ use std::time::Duration;
 
 use mdle_host::clap::ArgMatches;
 use mdle_host::{Batch, Watch, WholeFile};
-use mdle_runtime::{Meters, Pose};
+use mdle_runtime::{Meters, Pose, Radians};
 use mdle_simulator::{Form, Goal, Make, PARTS, Simulated, Start, StartError, StartNoise, Walls, World};
 
 use crate::observed::{Observed, Sounds};
@@ -124,16 +125,19 @@ fn hint(world: &World, form: Form, walls: &Walls) -> String {
     }
     match around(&world.start).find(fits) {
         Some(pose) => format!("there is room at {}", option(pose)),
-        None => "there is no room within 2 m of the world's own start".to_owned(),
+        None => "no place with room was found within 2 m of the world's own start".to_owned(),
     }
 }
 
-/// Returns poses with the heading of `start`, in steps of 10 cm up to 2 m from it along both axes, the nearest first.
+/// Returns poses in steps of 10 cm up to 2 m from `start` along both axes, the nearest first; each with the heading of
+/// `start` and at a right angle to it.
 fn around(start: &Pose) -> impl Iterator<Item = Pose> {
     let steps = (-20..=20).flat_map(|right: i32| (-20..=20).map(move |up: i32| (right, up)));
     let mut steps: Vec<_> = steps.collect();
     steps.sort_by_key(|(right, up)| right * right + up * up);
     let moved = |from: Meters, step: i32| Meters(libm::round(100.0 * from.0 + 10.0 * f64::from(step)) / 100.0);
-    let start = *start;
-    steps.into_iter().map(move |(right, up)| Pose { x: moved(start.x, right), y: moved(start.y, up), ..start })
+    let Pose { x, y, theta } = *start;
+    let headings = [theta, Radians(theta.0 + FRAC_PI_2).wrapped()];
+    let at = move |(right, up)| headings.map(|theta| Pose { x: moved(x, right), y: moved(y, up), theta });
+    steps.into_iter().flat_map(at)
 }

@@ -59,26 +59,30 @@ fn bad_starts_are_refused_with_a_hint() {
 /// The start of the world has room for a disc, but not for an ATRV-mini.
 #[test]
 fn no_hint_names_a_start_without_room() {
-    let walls = |far: f64| {
+    let walls = |far: f64, heading: f64| {
         let points = format!("[[-5, 0], [5, 0], [5, {far}], [-5, {far}], [-5, 0]]");
-        format!("start = {{ y = 0.25 }}\n[[wall]]\nname = \"side\"\npoints = {points}")
+        format!("start = {{ y = 0.25, heading = {heading} }}\n[[wall]]\nname = \"side\"\npoints = {points}")
     };
     let folder = folder("no_room");
-    let world = |name: &str, far: f64| {
+    let world = |name: &str, far: f64, heading: f64| {
         let path = folder.join(name);
-        fs::write(&path, walls(far)).expect("a file of our own");
+        fs::write(&path, walls(far, heading)).expect("a file of our own");
         path.to_str().expect("UTF-8").to_owned()
     };
-    let (wide, narrow) = (world("wide.toml", 2.0), world("narrow.toml", 0.5));
-    let starts = [&wide, &narrow].map(|world| refused(&["--body", "atrv", "--world", world]));
+    let wide = world("wide.toml", 2.0, 0.0);
+    let (across, narrow) = (world("across.toml", 0.65, 90.0), world("narrow.toml", 0.5, 0.0));
+    let starts = [&wide, &across, &narrow].map(|world| refused(&["--body", "atrv", "--world", world]));
     let given = refused(&["--body", "atrv", "--world", &wide, "--start", "0,0.1,0"]);
     insta::assert_snapshot!([&starts[..], &[given]].concat().join("\n"), @r#"
     the world's own start pose: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,0`
-    the world's own start pose: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is no room within 2 m of the world's own start
+    the world's own start pose: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,180`
+    the world's own start pose: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; no place with room was found within 2 m of the world's own start
     --start 0,0.1,0: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,0`
     "#);
-    let options = matches(&["--body", "atrv", "--world", &wide, "--start", "0,0.35,0"]);
-    assert!(Sim::connect(&options, Sim::PERIOD, &StopRequest::default()).is_ok());
+    for (world, start) in [(&wide, "0,0.35,0"), (&across, "0,0.35,180")] {
+        let options = matches(&["--body", "atrv", "--world", world, "--start", start]);
+        assert!(Sim::connect(&options, Sim::PERIOD, &StopRequest::default()).is_ok());
+    }
     assert!(Sim::connect(&matches(&["--world", &wide]), Sim::PERIOD, &StopRequest::default()).is_ok());
 }
 
