@@ -1,10 +1,8 @@
 //! Tests two plans, written as a reader of the book would, in a building that was drawn after the control laws had been
 //! written. Neither plan was changed after its first run.
 //!
-//! `MDLE_FIRST=8300000 MDLE_LONG=30` tries 300 seeds. With them, the ideal body and a Scout arrive in all runs by
-//! measures, and in 300 and 297 runs by landmarks. An ATRV-mini arrives in 248 and 282 runs. In its other runs it
-//! reaches the door of the store but does not find the way through, because it comes along the corridor and the door is
-//! only 36 cm wider than the robot.
+//! `MDLE_FIRST=7800000 MDLE_LONG=30` tries 600 seeds. With them, the ideal body and a Scout arrive in all runs by
+//! measures, and in 600 and 591 runs by landmarks. An ATRV-mini arrives in 577 and 586 runs.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, reason = "a test tells what happened")]
 
 use std::time::Duration;
@@ -68,12 +66,12 @@ fn assert_arrive(text: &str, body: Body, count: u64, share: u64) {
 fn a_plan_by_measures_arrives_in_a_new_building() {
     assert_arrive(BY_MEASURES, Body::Ideal, 20, 95);
     assert_arrive(BY_MEASURES, Body::Scout, 20, 95);
-    assert_arrive(BY_MEASURES, Body::Atrv, 20, 60);
+    assert_arrive(BY_MEASURES, Body::Atrv, 20, 80);
 }
 
 #[test]
 fn a_plan_by_landmarks_arrives_in_a_new_building() {
     assert_arrive(BY_LANDMARKS, Body::Ideal, 20, 95);
     assert_arrive(BY_LANDMARKS, Body::Scout, 20, 95);
-    assert_arrive(BY_LANDMARKS, Body::Atrv, 20, 80);
+    assert_arrive(BY_LANDMARKS, Body::Atrv, 20, 90);
 }
