@@ -136,6 +136,7 @@ codes! {
     W0207 "`FRAME here` without effect",
     W0208 "drive without a limit of time",
     W0209 "wait for a robot without a limit of time",
+    W0210 "sonars that cannot be aligned",
     W0301 "loop that can be skipped in one turn",
     W0302 "element that is always skipped",
     W0303 "element that is always true on entry",

@@ -1,27 +1,39 @@
 //! Example arguments for help texts.
 
+use super::ranges::limit;
 use super::written;
-use crate::alphabet::{Declaration, Param, ParameterKind};
+use crate::alphabet::{Declaration, Param, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Name, Number};
 
-/// Returns an example value for a parameter; `None` if the value is a name that only the user can know.
+/// Returns an example value for a parameter, which is in its range; `None` if the value is a name that only the user
+/// can know.
 pub(in crate::plan) fn example(param: &Param) -> Option<String> {
-    let value = match param.kind {
-        ParameterKind::Length => "1m".to_owned(),
-        ParameterKind::Speed => "20cm/s".to_owned(),
-        ParameterKind::Angle => "90deg".to_owned(),
-        ParameterKind::AngularRate | ParameterKind::Number | ParameterKind::Integer | ParameterKind::Sonar => {
-            "0".to_owned()
-        }
-        ParameterKind::Time => "5s".to_owned(),
-        ParameterKind::Voltage => "12V".to_owned(),
-        ParameterKind::Frequency => "10Hz".to_owned(),
-        ParameterKind::Count => "1".to_owned(),
-        ParameterKind::Bits(length) => format!("1{}", "0".repeat((length as usize).saturating_sub(1))),
+    let (value, unit) = match param.kind {
+        ParameterKind::Length => (1.0, "m"),
+        ParameterKind::Speed => (20.0, "cm/s"),
+        ParameterKind::Angle => (90.0, "deg"),
+        ParameterKind::Time => (30.0, "s"),
+        ParameterKind::Voltage => (12.0, "V"),
+        ParameterKind::Frequency => (10.0, "Hz"),
+        ParameterKind::AngularRate | ParameterKind::Number | ParameterKind::Integer | ParameterKind::Sonar => (0.0, ""),
+        ParameterKind::Count => (1.0, ""),
+        ParameterKind::Bits(length) => return Some(format!("1{}", "0".repeat((length as usize).saturating_sub(1)))),
         ParameterKind::Robot | ParameterKind::Module | ParameterKind::File => return None,
     };
-    Some(value)
+    let own = |value: f64| match (Unit::from_name(unit), param.unit) {
+        (Some(unit), Some(own)) => unit.to_si(value) / own.to_si(1.0),
+        _ => value,
+    };
+    let is_allowed = |value: f64| {
+        param.except != Some(value) && param.range.is_none_or(|(least, most)| least <= value && value <= most)
+    };
+    if is_allowed(own(value)) {
+        return Some(format!("{value}{unit}"));
+    }
+    let (least, most) = param.range.unwrap_or((0.0, 1.0));
+    let other = [most, least].into_iter().find(|value| is_allowed(*value))?;
+    Some(format!("{}{}", limit(other), param.unit.map_or("", |unit| unit.name)))
 }
 
 /// Returns the number of the sonar whose range the name denotes, as in the paper's `align r_7 r_9`; `None` if the name
@@ -55,4 +67,31 @@ pub(super) fn swapped(call: &Call, found: &[Diagnostic], fits: impl Fn(&Call) ->
     let message = format!("the arguments of `{}` are in the other order", call.name);
     let arguments = written(&swapped).split_once(' ')?.1.to_owned();
     fits(&swapped).then(|| Diagnostic::new(Code::E0303, message, span, "swap these").fix("write {}", span, arguments))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_example_is_allowed() {
+        let param = |kind, range, except| Param {
+            name: "a".to_owned(),
+            kind,
+            unit: None,
+            default: None,
+            range,
+            except,
+            with: Vec::new(),
+        };
+        let texts = [
+            (ParameterKind::Time, None, None),
+            (ParameterKind::Time, Some((0.0, 10.0)), Some(0.0)),
+            (ParameterKind::AngularRate, None, Some(0.0)),
+            (ParameterKind::Number, Some((0.0, 2.0)), Some(0.0)),
+            (ParameterKind::Number, Some((-2.0, 0.0)), Some(0.0)),
+        ]
+        .map(|(kind, range, except)| example(&param(kind, range, except)).unwrap_or_default());
+        assert_eq!(texts, ["30s", "10", "1", "2", "-2"]);
+    }
 }

@@ -1,5 +1,6 @@
 //! Converts numbers in arguments, checks their units and ranges, and reports errors in them.
 
+use super::examples::example;
 use super::ranges::{limit, meant_in_range};
 use super::{Fitted, Fitting, Value};
 use crate::alphabet::{Origin, Param, ParameterKind, Unit};
@@ -104,7 +105,8 @@ impl Fitting<'_> {
         let message = format!("`{quark}` takes any `{name}` but {value}");
         let here = format!("`{name}` is {value} {unit}");
         let report = Diagnostic::new(Code::E0304, message, number.span, here.trim_end().to_owned());
-        report.help(format!("write another {}, such as `{quark} 1{unit}`", param.kind.words().replace("a ", "")))
+        let other = example(param).unwrap_or_else(|| format!("1{unit}"));
+        report.help(format!("write another {}, such as `{quark} {other}`", param.kind.words().replace("a ", "")))
     }
 
     fn wrong_unit(&self, number: &Number, param: &Param) -> Diagnostic {

@@ -1,5 +1,7 @@
 //! Writes the message about a call with too many or too few arguments.
 
+use mdle_runtime::SONARS;
+
 use super::examples::{bits_apart, example};
 use super::{signature, written};
 use crate::alphabet::{Declaration, DeclarationKind, Param, ParameterKind, Unit};
@@ -59,14 +61,24 @@ pub(super) fn wrong_count(call: &Call, declaration: &Declaration, needed: usize)
     let report = report(format!("{} {} missing", names.join(" and "), if names.len() == 1 { "is" } else { "are" }));
     let examples: Option<Vec<_>> = missing.iter().map(example).collect();
     let are_sonars = declaration.params.iter().all(|param| param.kind == ParameterKind::Sonar);
-    if are_sonars && call.args.iter().any(|arg| !matches!(arg, Arg::Number(_))) {
-        let sonars = (3..).step_by(2).take(most).map(|sonar| format!(" {sonar}")).collect::<String>();
-        return report.fix("for instance {}", call.span, format!("{}{sonars}", call.name));
+    if are_sonars {
+        // Two sonars that look at one wall are two apart, as in the paper's `align 7 9`.
+        let sonars = (first_sonar(call)..).step_by(2).take(most).map(|sonar| format!(" {}", sonar % SONARS));
+        return report.fix("for instance {}", call.span, format!("{}{}", call.name, sonars.collect::<String>()));
     }
     match examples {
         Some(examples) => report.fix("for instance {}", call.span, format!("{} {}", written(call), examples.join(" "))),
         None => report,
     }
+}
+
+/// Returns the number of the sonar that a call names first, or of one to the left of the robot.
+fn first_sonar(call: &Call) -> usize {
+    let first = match call.args {
+        [Arg::Number(first), ..] => first.digits().parse().ok(),
+        _ => None,
+    };
+    first.filter(|sonar| *sonar < SONARS).unwrap_or(3)
 }
 
 /// Returns `true` if a number has a unit of time.

@@ -5,8 +5,10 @@
 
 mod ends;
 mod frames;
+mod goals;
 mod numbers;
 mod skipped;
+mod sonars;
 #[cfg(test)]
 mod tests;
 mod unanswered;
@@ -27,7 +29,9 @@ pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     ends::check(plan, &mut found);
     frames::check(plan, &mut found);
+    goals::check(plan, &mut found);
     skipped::check(plan, &mut found);
+    sonars::check(plan, &mut found);
     unlimited::check(plan, &mut found);
     unanswered::check(plan, &mut found);
     let mut places: BTreeSet<(Option<Span>, Code)> = BTreeSet::new();

@@ -67,6 +67,32 @@ fn a_drive_that_may_never_arrive() {
 }
 
 #[test]
+fn a_stuck_without_a_goal() {
+    assert_judged!(
+        "{ P (bumper OR stuck 1min)
+  (Atom (stuck 30) go 20 0)
+  { Q (r0 < 1m AND NOT stuck 20) (Atom (stuck 5 OR bumper) (goAvoid(sun module)))^2 }
+}"
+    );
+    assert_silent(&[
+        "{ P (bumper) (Atom (stuck 30) (goAvoid 0 4m)) { Q (stuck 1min) (Atom (wait 5) stop) (Atom (null) goAvoid 0 3m) } }",
+        "{ P (wait 9min) a: (Atom (stuck 30) (goAvoid 0 4m)) { Q (NOT after a (stuck 30)) (Atom (wait 2) go -15 0) } }",
+        "{ P (stuck 1min) (Atom (null) lead 2m 0deg 3m) }",
+    ]);
+}
+
+#[test]
+fn sonars_that_no_turn_makes_equal() {
+    assert_judged!(
+        "{ P (bumper)
+  (Atom (wait 5) align 3 3)
+  { Q (wait 1min) ((Atom (wait 5) align r_11 r_3))^2 (Atom (wait 5) stop) }
+}"
+    );
+    assert_silent(&["{ P (bumper) (Atom (wait 5) align 3 5) (Atom (wait 5) align 15 1) (Atom (wait 5) align 3 10) }"]);
+}
+
+#[test]
 fn a_wait_for_a_robot_that_may_never_come() {
     assert_judged!(
         "{ P (bumper)
