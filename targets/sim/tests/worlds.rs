@@ -139,22 +139,22 @@ fn faults_have_their_place() {
     room.toml:1:25: unknown field `theta`, expected one of `x`, `y`, `heading`
     room.toml:1:15: NaN is no coordinate: expected a number, at most 1000 km
     room.toml:1:21: inf is no coordinate: expected a number, at most 1000 km
-    room.toml:1:9: invalid type: sequence, expected a table
-    room.toml:1:8: invalid type: integer `3`, expected a sequence
-    room.toml:1:8: missing field `max`
+    room.toml:1:9: `start`: invalid type: sequence, expected a table
+    room.toml:1:8: `wall`: invalid type: integer `3`, expected a sequence
+    room.toml:1:8: `goal`: missing field `max`
     room.toml:1:30: a goal without an inside: it would reach from (0, 0) to (0, 1)
     room.toml:1:8: a goal's `heading` needs a `tolerance` and the other way round, as in `heading = 90, tolerance = 15`
     room.toml:1:64: a tolerance is from 0 to 180 degrees
     room.toml:1:18: the charger is in "rear": a robot on it, 0.205 m around `at`, would overlap that
     room.toml:2:18: the charger is in "box 1": a robot on it, 0.205 m around `at`, would overlap that
     room.toml:1:47: a charger without a reach: expected one above 0
-    room.toml:1:11: missing field `heading`
+    room.toml:1:11: `charger`: missing field `heading`
     room.toml:1:18: `at` is two numbers, x and y in metres, not 3
     room.toml:1:9: "miles" is no unit of length; expected one of `m`, `cm`, `mm`, `in`, `ft`
     room.toml:1:9: `rough` is 2; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:1:9: `rough` is -0.1; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:1:9: `rough` is NaN; expected 0, for smooth surfaces, to 1, for those heard at any angle
-    room.toml:1:9: invalid type: string "very", expected a number
+    room.toml:1:9: `rough`: invalid type: string "very", expected a number
     room.toml:3:9: `rough` is 2; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:4:9: `rough` is -0.1; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:2:9: `rough` is NaN; expected 0, for smooth surfaces, to 1, for those heard at any angle

@@ -43,7 +43,8 @@ fn read(text: &str) -> Result<World, Wrong> {
     let written: WorldText = toml::from_str(text).map_err(|error| {
         // Uses the terms that the author of the file knows.
         let what = error.message().replace('\n', " ").replace("expected f64", "expected a number");
-        Wrong(error.span(), what)
+        let key = error.span().and_then(|span| key_before(text.get(..span.start)?));
+        Wrong(error.span(), key.map_or_else(|| what.clone(), |key| format!("`{key}`: {what}")))
     })?;
     let unit = Unit::of(written.units.as_ref())?;
     let rough = outlines::rough(written.rough.as_ref(), 0.0)?;
@@ -78,6 +79,14 @@ fn read(text: &str) -> Result<World, Wrong> {
         return Err(Wrong::at(&text.get_ref().0.at, what));
     }
     Ok(world)
+}
+
+/// Returns the key whose value follows `before`; `None` if no value follows it.
+fn key_before(before: &str) -> Option<&str> {
+    let assigned = before.trim_end().strip_suffix('=')?.trim_end();
+    let is_part = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-');
+    let from = assigned.rfind(|letter| !is_part(letter)).map_or(0, |at| at + 1);
+    assigned.get(from..).filter(|key| !key.is_empty())
 }
 
 /// Returns the line and column of a byte of `text`, counted from 1; columns count characters.
