@@ -10,7 +10,8 @@ pub(crate) const PLAN: &str = include_str!("plan.rs");
 
 pub(crate) const ROVER: &str = include_str!("rover.rs");
 
-pub(crate) const MANIFEST: &str = r#"# Not of the workspace around the folder that tests write to.
+pub(crate) const MANIFEST: &str = concat!(
+    r#"# Not of the workspace around the folder that tests write to.
 [workspace]
 
 [package]
@@ -19,9 +20,14 @@ version = "0.1.0"
 edition = "2024"
 
 [dependencies]
-mdle-runtime = "0.1"
-mdle-host = "0.1"
-"#;
+mdle-runtime = ""#,
+    env!("CARGO_PKG_VERSION"),
+    r#""
+mdle-host = ""#,
+    env!("CARGO_PKG_VERSION"),
+    r#""
+"#
+);
 
 /// Returns the folder of cargo's build results in a cache.
 pub(crate) fn target(cache: &Cache) -> PathBuf {
