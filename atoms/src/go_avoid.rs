@@ -222,8 +222,8 @@ struct Chosen {
 }
 
 impl GoingRound {
-    /// Chooses a direction from the pings of the sonars. While the robot keeps clear of a person who crosses its way,
-    /// returns the input as an error instead.
+    /// Chooses a direction from the pings of the sonars. While the robot keeps clear of a person who crosses its way, or
+    /// of a wall beside its start, returns the input as an error instead.
     ///
     /// The function is not inlined, so that its obstacles are no longer on the stack when [`Self::squeeze`] puts a map
     /// there.
@@ -235,6 +235,10 @@ impl GoingRound {
         if self.passers.stops(t) {
             let v = self.passers.waits(&obstacles, here, self.speed);
             return Err(Twist { v, omega: RadiansPerSecond(0.0) });
+        }
+        let departs = obstacles.beside.departs(self.driven.0, self.speed);
+        if let Some(twist) = departs.filter(|_| self.passers.gives_way().is_none()) {
+            return Err(twist);
         }
         let direction = if self.goes_along(t) {
             let seen = obstacles.remember(&self.memory, self.narrow.map(), here, t);

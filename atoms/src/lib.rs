@@ -16,6 +16,7 @@ pub mod alphabet;
 mod approach;
 mod askew;
 mod at_isection;
+mod beside;
 mod bumper;
 mod crossing;
 mod directions;

@@ -5,6 +5,7 @@
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
 
+use crate::beside::Beside;
 use crate::gains::{Gains, fire_in_turn};
 use crate::map::{Cell, Map};
 use crate::memory::{Memory, PLACES};
@@ -76,6 +77,8 @@ pub(crate) struct Obstacles {
     soft: f64,
     /// Distance by which the body reaches further ahead than to its sides, in metres.
     nose: f64,
+    /// The echoes beside the body.
+    pub(crate) beside: Beside,
     gains: &'static Gains,
 }
 
@@ -141,14 +144,16 @@ impl Obstacles {
     pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
         let (half_length, half_width) = (y.half_length().0, y.half_width().0);
         let gains = Gains::of(y);
-        let Gains { hard_margin, least_range, soft_margin, .. } = *gains;
+        let Gains { hard_margin, least_range, saturates, soft_margin, .. } = *gains;
         let half_width = (half_width + y.body_radius().0) / 2.0;
         let (hard, close, soft) = (half_width + hard_margin, half_width + MARGIN, half_width + soft_margin);
         let ring = y.ring_radius();
         let nose = half_length - half_width;
-        let mut seen = Self { points: [Point { x: 0.0, y: 0.0 }; POINTS], count: 0, hard, close, soft, nose, gains };
+        let (points, beside) = ([Point { x: 0.0, y: 0.0 }; POINTS], Beside::default());
+        let mut seen = Self { points, count: 0, hard, close, soft, nose, beside, gains };
         for sonar in (0..SONARS as u8).map(SonarId::new) {
             if let Some((ping, range)) = heard(y, sonar) {
+                seen.beside.take(sonar, range, saturates);
                 let may_be_nearer = range.0 < least_range;
                 let range = if may_be_nearer { Meters(half_width + AT_LEAST_RANGE - ring.0) } else { range };
                 on_arc(&ping, range, sonar, ring, here, ARC).into_iter().for_each(|point| seen.push(point));

@@ -39,6 +39,26 @@ fn arrives_by_one_sonar_that_still_works() {
     }
 }
 
+/// The rear corners of a rectangle would swing into a wall that is nearer than its sonars can measure.
+#[test]
+fn a_rectangle_leaves_a_wall_beside_it_in_an_arc() {
+    let turns = |sonars: &[u8], halves: (f64, f64)| {
+        let mut y = Sensed { confirmation: 2, ..sized(halves.0, halves.1) };
+        for sonar in sonars {
+            y.ping(mdle_runtime::SonarId::new(*sonar), Some(0.16));
+        }
+        let twist = quark(90.0, 3.0).begin(&y, begun()).input(&y, Nanos(0));
+        (twist.v.0 > 0.0, twist.omega.0)
+    };
+    let atrv = (0.315, 0.27);
+    assert!(matches!(turns(&[12], atrv), (true, 0.04..0.05)), "{:?}", turns(&[12], atrv));
+    assert!(matches!(turns(&[4], atrv), (true, -0.05..-0.04)), "{:?}", turns(&[4], atrv));
+    assert_eq!(turns(&[4, 12], atrv), (true, 0.0));
+    for elsewhere in [turns(&[12, 0], atrv), turns(&[8], atrv), turns(&[12], (0.205, 0.205))] {
+        assert!(elsewhere.1 > 0.1, "turns to its goal: {elsewhere:?}");
+    }
+}
+
 #[test]
 fn never_drives_backwards_nor_into_what_is_close_ahead() {
     let mut y = Sensed::default();

@@ -51,6 +51,18 @@ pub(crate) fn middle(body: Body, seed: u64) -> Crossing {
     ahead(seed, 6.0, &[hallway(wide), block].concat())
 }
 
+/// Returns a start 2 to 12 cm beside a wall that runs along the robot, and a goal in any direction on the free side of
+/// the wall.
+pub(crate) fn beside(body: Body, seed: u64) -> Crossing {
+    let mut chance = Chance::new(seed ^ 0xbe5);
+    let side = if chance.unit() < 0.5 { 1.0 } else { -1.0 };
+    let (wall, far) = (-side * (width(body) / 2.0 + 0.02 + 0.1 * chance.unit()), 4.0 * side);
+    let (sin, cos) = libm::sincos(core::f64::consts::PI * chance.unit());
+    let text = format!("[[wall]]\npoints = [[-5, {wall}], [5, {wall}], [5, {far}], [-5, {far}], [-5, {wall}]]");
+    let to = Point { x: 2.5 * cos, y: 2.5 * side * sin };
+    Crossing { world: World::parse("a wall beside the start", &text).expect("a good world"), to }
+}
+
 /// Returns a U-shaped wall across the path, open towards the start and up to 1.5 m deep.
 pub(crate) fn corner(body: Body, seed: u64) -> Crossing {
     let mut chance = Chance::new(seed ^ 0xc0);
