@@ -176,7 +176,7 @@ impl Map {
     /// Returns `true` if the map already has an object nearer than `least` in the cone of a sonar at this position.
     fn explains(&self, from: Pose, axis: Radians, least: f64) -> bool {
         ARC.iter().any(|degrees| {
-            let (sin, cos) = libm::sincos(axis.0 + 2.0 * degrees.to_radians());
+            let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
             let steps = libm::ceil(least / CELL) as i32 + 1;
             (0..=steps).any(|step| {
                 let along = f64::from(step) * CELL;

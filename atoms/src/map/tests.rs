@@ -58,6 +58,17 @@ fn an_echo_that_something_known_explains_adds_nothing_else() {
     assert!(!is_ahead(&map, 0.99));
 }
 
+/// The jamb beside a robot in a doorway is nearer than the least range, and the map has it a cell further back.
+#[test]
+fn an_object_beside_the_cone_explains_no_echo() {
+    let (mut map, mut y) = heard(&[], 2);
+    map.occupy((0.375, 0.075), (0.375, 0.075));
+    y.now = Nanos(1);
+    y.ping_at(AHEAD, Some(0.1524), y.now);
+    take(&mut map, &y);
+    assert!(is_ahead(&map, 0.19 + INSTEAD));
+}
+
 #[test]
 fn a_saturated_echo_of_a_wide_body_comes_from_its_whole_arc() {
     let hides = |range: f64| {
