@@ -6,7 +6,7 @@ use mdle_runtime::{
     Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Twist,
 };
 
-use crate::gains::Gains;
+use crate::gains::{Gains, fire_in_turn};
 use crate::memory::Memory;
 use crate::narrow::Narrow;
 use crate::passers::Passers;
@@ -271,19 +271,21 @@ impl GoingRound {
     }
 
     /// Returns the input in or before a narrow place; `None` elsewhere.
-    fn squeeze<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, chosen: &Chosen) -> Option<Twist> {
+    fn squeeze<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos, chosen: &Chosen) -> Option<Twist> {
         let off = Radians(chosen.direction.0 - here.theta.0).wrapped().0.abs();
         self.headed = self.headed.or((off < ON_THE_SPOT.0).then_some(t));
         let since = self.headed.map_or(Nanos::ZERO, |headed| t.since(headed));
         let stalled = self.progress.stalled(here, &self.goal, t).min(since);
-        let is_rectangle = !y.is_disc();
         if stalled < HELD_UP && !self.narrow.follows() {
-            // The corners of a rectangle swing into obstacles of which the tangent rule knows nothing.
+            // Of the corners of a rectangle, and of what sonars that fire in turn heard up to a second ago, the tangent
+            // rule knows nothing.
             let rounds = || self.narrow.round(y, here, chosen.direction, self.speed, self.winding);
-            return is_rectangle.then(rounds).flatten();
+            return fire_in_turn(y).then(rounds).flatten();
         }
         // A disc can turn in every place that it can reach. With this rule, fewer Scouts found their way in a maze.
-        if is_rectangle && let Some(leaves) = self.leave(y, here, t, chosen) {
+        if !y.is_disc()
+            && let Some(leaves) = self.leave(y, here, t, chosen)
+        {
             return Some(leaves);
         }
         let goes_round = stalled.0 % (SQUEEZES.0 + GOES_ROUND.0) >= SQUEEZES.0;

@@ -335,7 +335,7 @@ fn seven_metres_ahead_are_reached_round_obstacles() {
         ("floor.toml", "0,0,0", "ideal", "1"),
         ("room", "0.7,0.7,45", "ideal", "1"),
         ("hall", "1.5,5,20", "scout", "1"),
-        ("maze", "4.2,0.6,120", "scout", "8"),
+        ("maze", "4.2,0.6,120", "scout", "2"),
     ];
     for (world, start, body, seed) in worlds {
         let run = run(&ahead, &["--world", world, "--start", start, "--body", body, "--seed", seed]);
