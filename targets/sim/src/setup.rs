@@ -75,7 +75,9 @@ impl Setup {
             let hint = hint(&world, make.form(), &walls);
             match given {
                 Some((text, _)) => format!("--start {text}: {error}; {hint}"),
-                None => format!("the world's own start pose: {error}; {hint}"),
+                None => {
+                    format!("{}: {error}; {hint}", world.start_at.as_deref().unwrap_or("the world's own start pose"))
+                }
             }
         };
         mdle_simulator::check(&start, make.form(), &world, &walls).map_err(with_option)?;

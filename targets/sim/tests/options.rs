@@ -73,10 +73,11 @@ fn no_hint_names_a_start_without_room() {
     let (across, narrow) = (world("across.toml", 0.65, 90.0), world("narrow.toml", 0.5, 0.0));
     let starts = [&wide, &across, &narrow].map(|world| refused(&["--body", "atrv", "--world", world]));
     let given = refused(&["--body", "atrv", "--world", &wide, "--start", "0,0.1,0"]);
-    insta::assert_snapshot!([&starts[..], &[given]].concat().join("\n"), @r#"
-    the world's own start pose: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,0`
-    the world's own start pose: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,180`
-    the world's own start pose: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; no place with room was found within 2 m of the world's own start
+    let sentences = [&starts[..], &[given]].concat().join("\n").replace(&format!("{}/", folder.display()), "");
+    insta::assert_snapshot!(sentences, @r#"
+    wide.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,0`
+    across.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,180`
+    narrow.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; no place with room was found within 2 m of the world's own start
     --start 0,0.1,0: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,0`
     "#);
     for (world, start) in [(&wide, "0,0.35,0"), (&across, "0,0.35,180")] {

@@ -52,6 +52,7 @@ impl Header {
             outlines,
             things: Vec::new(),
             start: Pose::ORIGIN,
+            start_at: None,
             goal: None,
             charger: None,
             sounds: Vec::new(),

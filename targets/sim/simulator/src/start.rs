@@ -79,8 +79,9 @@ pub fn check(pose: &Pose, form: Form, world: &World, walls: &Walls) -> Result<()
         let name = walls::nearest(world, &body).map(|outline| outline.name.clone());
         return Err(StartError::Overlaps(form, name.unwrap_or_default()));
     }
-    // A world without closed walls has no outside.
-    if !encloses(walls, place) && encloses(walls, Point::of(&world.start)) {
+    // A world without closed walls has no outside. A box around the start pose is no such wall.
+    let start = Point::of(&world.start);
+    if !encloses(walls, place) && encloses(walls, start) && world.solid(start).is_none() {
         return Err(StartError::OffTheFloor);
     }
     Ok(())
@@ -144,6 +145,14 @@ mod tests {
         assert_eq!([check(0.0, form), check(45.0, form)], [overlaps.clone(), overlaps.clone()]);
         let sentence = "the robot, 0.63 m long and 0.54 m wide, would stand in \"wall\"";
         assert_eq!(overlaps.map_err(|error| error.to_string()), Err::<(), _>(sentence.to_owned()));
+    }
+
+    #[test]
+    fn a_disc_around_the_start_of_the_world_is_no_floor() {
+        let world = World::parse("a disc", "[[disc]]\ncentre = [0.1, 0]\nradius = 0.3").expect("a good world");
+        let (beside, walls) = (Pose { x: Meters(-1.0), ..Pose::ORIGIN }, Walls::of(&world));
+        assert_eq!(check(&Pose::ORIGIN, Form::SCOUT, &world, &walls), Err(StartError::Inside("disc 1".into())));
+        assert_eq!(check(&beside, Form::SCOUT, &world, &walls), Ok(()));
     }
 
     #[test]

@@ -21,6 +21,8 @@ pub struct World {
     pub things: Vec<Thing>,
     /// Default start pose.
     pub start: Pose,
+    /// Place of the start pose in the world's file, as `file:line:column`; `None` if no file gives a start pose.
+    pub start_at: Option<String>,
     /// Goal; `None` if the world has no goal.
     pub goal: Option<Goal>,
     /// Charger; `None` if the world has no charger.
@@ -45,6 +47,7 @@ impl World {
             outlines: Vec::new(),
             things: Vec::new(),
             start: Pose::ORIGIN,
+            start_at: None,
             goal: None,
             charger: None,
             sounds: Vec::new(),

@@ -9,6 +9,7 @@ mod text;
 
 use std::ops::Range;
 
+use mdle_runtime::Pose;
 use toml::Spanned;
 
 use crate::footprint::RADIUS;
@@ -31,11 +32,11 @@ impl Wrong {
 
 /// Returns the world that `text` describes.
 pub(crate) fn parse(file: &str, text: &str) -> Result<World, WorldError> {
-    read(text)
+    read(file, text)
         .map_err(|Wrong(span, what)| WorldError::new(file, span.map(|span| line_and_column(text, span.start)), what))
 }
 
-fn read(text: &str) -> Result<World, Wrong> {
+fn read(file: &str, text: &str) -> Result<World, Wrong> {
     if text.len() > BYTES_MOST {
         let bytes = text.len();
         return Err(Wrong(None, format!("a world of {bytes} bytes is too large; expected at most {BYTES_MOST}")));
@@ -48,7 +49,11 @@ fn read(text: &str) -> Result<World, Wrong> {
     })?;
     let unit = Unit::of(written.units.as_ref())?;
     let rough = outlines::rough(written.rough.as_ref(), 0.0)?;
-    let start = unit.start(&written.start.0)?;
+    let start = written.start.as_ref().map_or(Ok(Pose::ORIGIN), |start| unit.start(&start.get_ref().0))?;
+    let start_at = written.start.as_ref().map(|start| {
+        let (line, column) = line_and_column(text, start.span().start);
+        format!("{file}:{line}:{column}")
+    });
     let goal = written.goal.as_ref().map(|goal| unit.goal(goal)).transpose()?;
     let (mut outlines, mut things) = (Vec::new(), Vec::new());
     for (number, wall) in (1..).zip(&written.walls) {
@@ -71,7 +76,7 @@ fn read(text: &str) -> Result<World, Wrong> {
     }
     let charger = written.charger.as_ref().map(|charger| unit.charger(charger)).transpose()?;
     let (sounds, t60) = (unit.sounds(&written.sounds)?, sounds::t60(written.t60.as_ref())?);
-    let world = World { outlines, things, start, goal, charger, sounds, t60, rough, contours: 0 };
+    let world = World { outlines, things, start, start_at, goal, charger, sounds, t60, rough, contours: 0 };
     world.check_size().map_err(|what| Wrong(None, what))?;
     let blocked = charger.and_then(|charger| world.obstacle_at(&charger, RADIUS));
     if let (Some(name), Some(text)) = (blocked, &written.charger) {

@@ -17,8 +17,7 @@ pub(super) type Numbers = Spanned<Vec<Spanned<f64>>>;
 pub(super) struct WorldText {
     pub(super) units: Option<Spanned<String>>,
     pub(super) rough: Option<Spanned<f64>>,
-    #[serde(default)]
-    pub(super) start: TomlTable<StartText>,
+    pub(super) start: Option<Spanned<TomlTable<StartText>>>,
     pub(super) goal: Option<Spanned<TomlTable<GoalText>>>,
     pub(super) charger: Option<Spanned<TomlTable<ChargerText>>>,
     pub(super) t60: Option<Spanned<f64>>,
@@ -34,7 +33,7 @@ pub(super) struct WorldText {
     pub(super) doors: Vec<TomlTable<DoorText>>,
 }
 
-#[derive(Deserialize, Default)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct StartText {
     pub(super) x: Option<Spanned<f64>>,
@@ -112,7 +111,6 @@ pub(super) struct DoorText {
 }
 
 /// A value that must be a table. Without this type, serde would also accept an array and ignore its surplus values.
-#[derive(Default)]
 pub(super) struct TomlTable<T>(pub(super) T);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for TomlTable<T> {
