@@ -6,6 +6,7 @@ use mdle_runtime::{
     Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Twist,
 };
 
+use crate::beside::Beside;
 use crate::gains::{Gains, fire_in_turn};
 use crate::memory::Memory;
 use crate::narrow::Narrow;
@@ -109,6 +110,8 @@ pub struct GoingRound {
     memory: Memory,
     narrow: Narrow,
     dwell: Dwell,
+    /// `true` while the robot may drive away from a wall beside the place where its law began.
+    departs: bool,
 }
 
 impl GoingRound {
@@ -222,8 +225,8 @@ struct Chosen {
 }
 
 impl GoingRound {
-    /// Chooses a direction from the pings of the sonars. While the robot keeps clear of a person who crosses its way, or
-    /// of a wall beside its start, returns the input as an error instead.
+    /// Chooses a direction from the pings of the sonars. While the robot keeps clear of a person who crosses its way,
+    /// or of a wall beside its start, returns the input as an error instead.
     ///
     /// The function is not inlined, so that its obstacles are no longer on the stack when [`Self::squeeze`] puts a map
     /// there.
@@ -236,8 +239,10 @@ impl GoingRound {
             let v = self.passers.waits(&obstacles, here, self.speed);
             return Err(Twist { v, omega: RadiansPerSecond(0.0) });
         }
-        let departs = obstacles.beside.departs(self.driven.0, self.speed);
-        if let Some(twist) = departs.filter(|_| self.passers.gives_way().is_none()) {
+        self.departs &= Beside::is_on_arc(self.driven.0, self.winding.turned());
+        let departs =
+            obstacles.beside.departs(self.speed).filter(|_| self.departs && self.passers.gives_way().is_none());
+        if let Some(twist) = departs {
             return Err(twist);
         }
         let direction = if self.goes_along(t) {
@@ -314,11 +319,12 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
     fn begin(&self, y: &Y, begin: Begin) -> GoingRound {
         let (here, bearing) = (y.pose(), begin.frame.outward(self.bearing));
         let goal = here.towards(bearing, self.range);
+        let axis = begin.frame.outward(Radians(0.0));
         GoingRound {
             goal,
             is_renewed: false,
             progress: Progress::begin(here, &goal, begin.now),
-            axis: begin.frame.outward(Radians(0.0)),
+            axis,
             drift: (Radians(0.0), here),
             speed: self.speed,
             look_ahead: Gains::of(y).look_ahead,
@@ -333,6 +339,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
             memory: Memory::EMPTY,
             narrow: Narrow::EMPTY,
             dwell: Dwell::begin(here, begin.now),
+            departs: Beside::is_along_walls(Radians(here.theta.0 - axis.0 - y.drift(axis).0)),
         }
     }
 }

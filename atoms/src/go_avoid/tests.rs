@@ -59,6 +59,25 @@ fn a_rectangle_leaves_a_wall_beside_it_in_an_arc() {
     }
 }
 
+/// An arc that begins askew to a wall would lead into the wall.
+#[test]
+fn a_rectangle_that_is_askew_to_a_wall_beside_it_drives_no_arc() {
+    let beside = |begins: f64, turned: f64| {
+        let mut y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+        y.pose.theta = Radians::from_degrees(begins);
+        let mut law = quark(90.0, 3.0).begin(&y, begun());
+        y.pose.theta = Radians::from_degrees(begins + turned);
+        law.input(&y, Nanos(0));
+        y.ping(mdle_runtime::SonarId::new(12), Some(0.16));
+        y.pose.theta = Radians::from_degrees(begins);
+        law.input(&y, Nanos(1)).omega.0
+    };
+    assert!([0.0, 4.0, 94.0, -86.0].iter().all(|begins| (0.04..0.05).contains(&beside(*begins, 0.0))));
+    for (begins, turned) in [(20.0, 0.0), (-20.0, 0.0), (0.0, -20.0)] {
+        assert!(beside(begins, turned) > 0.1, "begins at {begins}, turned {turned}");
+    }
+}
+
 #[test]
 fn never_drives_backwards_nor_into_what_is_close_ahead() {
     let mut y = Sensed::default();
