@@ -102,12 +102,17 @@ impl Setup {
     fn robot(&self, seed: Option<u64>) -> Result<Observed, String> {
         let make = Make { seed, ..self.make.clone() };
         let start = match (self.noise, seed) {
-            (Some(noise), Some(seed)) => noise.pose(&self.start, seed, make.form(), &self.world, &self.walls),
+            (Some(noise), Some(seed)) => {
+                noise.pose(&self.start, seed, make.form(), &self.world, &self.walls).map_err(|error| {
+                    format!(
+                        "--start-noise: no random start has room; the last one tried: {error}; give less, as in `0.1,5`"
+                    )
+                })?
+            }
             (Some(_), None) => return Err("--start-noise: by which chance? Give a seed, as in `--seed 1`".to_owned()),
-            (None, _) => Ok(self.start),
+            (None, _) => self.start,
         };
-        let robot = start.and_then(|start| Simulated::with(&make, &self.world, start, self.period));
-        let robot = robot.map_err(|error| format!("no start could be found by chance: {error}"))?;
+        let robot = Simulated::with(&make, &self.world, start, self.period).map_err(|error| error.to_string())?;
         let sounds = Sounds { world: Arc::clone(&self.world), seed: seed.unwrap_or_default() };
         Ok(Observed::from(robot.charged(self.charge)).judged_by(self.goal).among(sounds))
     }

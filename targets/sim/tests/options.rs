@@ -56,6 +56,16 @@ fn bad_starts_are_refused_with_a_hint() {
     "#);
 }
 
+#[test]
+fn a_noise_that_finds_no_start_is_named() {
+    let cell = folder("cell").join("cell.toml");
+    let around = "[[wall]]\npoints = [[-0.25, -0.25], [0.25, -0.25], [0.25, 0.25], [-0.25, 0.25], [-0.25, -0.25]]";
+    fs::write(&cell, around).expect("a file of our own");
+    let world = cell.to_str().expect("UTF-8");
+    let sentence = refused(&["--world", world, "--body", "scout", "--seed", "1", "--start-noise", "50,180"]);
+    insta::assert_snapshot!(sentence, @"--start-noise: no random start has room; the last one tried: that is off the floor; give less, as in `0.1,5`");
+}
+
 /// The start of the world has room for a disc, but not for an ATRV-mini.
 #[test]
 fn no_hint_names_a_start_without_room() {
