@@ -23,6 +23,8 @@ pub(crate) struct Sensed {
     pub(crate) supply: Supply,
     pub(crate) paths: PathStore,
     pub(crate) published: Published,
+    /// Drift of the heading.
+    pub(crate) drift: Radians,
     /// Half of the body's length and of its width, in metres; equal for a disc.
     pub(crate) halves: [f64; 2],
 }
@@ -39,6 +41,7 @@ impl Default for Sensed {
             supply: Supply::default(),
             paths: PathStore::EMPTY,
             published: Published::NONE,
+            drift: Radians(0.0),
             halves: [0.205; 2],
         }
     }
@@ -91,6 +94,10 @@ impl Odometry for Sensed {
 
     fn velocity(&self) -> Twist {
         self.velocity
+    }
+
+    fn drift(&self, _: Radians) -> Radians {
+        self.drift
     }
 }
 

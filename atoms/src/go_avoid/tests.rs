@@ -220,6 +220,39 @@ fn a_dead_end_is_left() {
     assert!(v.0 < 0.0, "{v:?}");
 }
 
+/// Odometry may report a heading across the walls for a robot that is parallel to them.
+#[test]
+fn the_drift_of_the_heading_decides_whether_a_robot_is_askew() {
+    let departs = |degrees: f64, drift: f64| {
+        let mut y = Sensed { confirmation: 2, drift: Radians::from_degrees(drift), ..sized(0.315, 0.27) };
+        y.pose.theta = Radians::from_degrees(degrees);
+        quark(90.0, 3.0).begin(&y, begun()).departs
+    };
+    assert!(departs(0.0, 0.0) && departs(20.0, 20.0));
+    assert!(!departs(0.0, 20.0) && !departs(20.0, 0.0));
+}
+
+/// The robot stands beside a wall on its right, where it would drive away in an arc to the left.
+#[test]
+fn a_robot_beside_a_wall_gives_way_before_it_drives_away() {
+    let turns = |nearer: f64| {
+        let mut y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+        let mut law = quark(0.0, 8.0).begin(&y, begun());
+        let mut omega = 0.0;
+        for echo in 0..6 {
+            y.now = Nanos(echo * 360_000_000);
+            y.ping_at(mdle_runtime::SonarId::new(0), Some(5.0 - nearer * 0.36 * echo as f64), y.now);
+            y.ping_at(mdle_runtime::SonarId::new(12), Some(0.16), y.now);
+            omega = law.input(&y, y.now).omega.0;
+        }
+        (law.passers.gives_way().is_some(), omega)
+    };
+    let (gives_way, arc) = turns(0.0);
+    assert!(!gives_way && (0.04..0.05).contains(&arc), "{arc}");
+    let (gives_way, aside) = turns(1.0);
+    assert!(gives_way && !(0.04..0.05).contains(&aside), "{aside}");
+}
+
 /// A person who comes to within 1.4 m at 67.5° is 53 cm ahead: the robot would be touched where it stands.
 #[test]
 fn the_robot_backs_off_from_a_person_who_crosses() {
