@@ -211,7 +211,7 @@ mod tests {
     fn long_lists_look_as_if_they_were_laid_out_at_once() {
         let number = |number: usize| Literal::usize_unsuffixed(number * number);
         let text = |number: usize| format!("number \"{number}\"\n");
-        let elements: [&dyn Fn(usize) -> TokenStream; 9] = [
+        let elements: [&dyn Fn(usize) -> TokenStream; 10] = [
             &|i| {
                 let number = number(i);
                 quote!(#number)
@@ -250,6 +250,11 @@ mod tests {
             &|i| {
                 let number = number(i);
                 if i % 100 == 0 { quote!(None) } else { quote!(#number) }
+            },
+            // An operator is not a part of a path.
+            &|i| {
+                let number = number(i);
+                quote!(&a::call(#number))
             },
         ];
         for length in [PIECE - 1, PIECE, PIECE + 1, 2 * PIECE + 7] {
