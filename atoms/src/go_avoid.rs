@@ -259,7 +259,7 @@ impl GoingRound {
 
     /// Returns the input of a robot that has to leave the place where it has stayed; `None` if it does not have to. Its
     /// detour then passes the obstacle on the opposite side, because the present side has led to this place.
-    fn leave<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, chosen: &Chosen) -> Option<Twist> {
+    fn leave<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos, chosen: &Chosen) -> Option<Twist> {
         if self.dwell.take(here, t) {
             let turned = self.winding.turned();
             let begin = |detour: Detour| Detour::begin(detour.side.other(), &self.goal, here, turned, t);

@@ -5,7 +5,7 @@
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
-use crate::gains::{Gains, fire_in_turn};
+use crate::gains::{Evidence, Gains, fire_in_turn};
 
 /// Number of cells along a side.
 pub(crate) const CELLS: i32 = 64;
@@ -21,17 +21,15 @@ const UNKNOWN: u8 = 4;
 const UNKNOWN_ROW: [u8; BYTES] = [UNKNOWN | UNKNOWN << 4; BYTES];
 /// Minimum evidence of an occupied cell.
 const OCCUPIED: u8 = 8;
-/// Amount by which an echo increases the evidence of a cell.
-const HIT: u8 = 4;
 /// Maximum evidence of a cell.
 const MOST: u8 = 13;
-/// Amount by which a passing ping decreases the evidence of a cell.
-const MISS: u8 = 2;
 /// Angles from a sonar's axis, in degrees, of the points that represent an echo.
 const ARC: [f64; 9] = [-12.0, -9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0, 12.0];
 /// Rays along which a ping marks cells as free: the angle from the sonar's axis, in degrees, and the distance from the
 /// transducer, in metres, at which the marking begins. Nearer cells are marked by another ray.
-const RAYS: [(f64, f64); 5] = [(0.0, 0.0), (-11.0, 0.26), (11.0, 0.26), (-5.5, 0.52), (5.5, 0.52)];
+const RAYS: [(f64, f64); 5] = [(0.0, 0.0), (-EDGE, 0.26), (EDGE, 0.26), (-5.5, 0.52), (5.5, 0.52)];
+/// Angle between a sonar's axis and the rays at the edges of its cone, in degrees.
+const EDGE: f64 = 11.0;
 /// Distance from the transducer, in metres, up to which a ping changes the map.
 const WITHIN: f64 = 1.6;
 /// Range, in metres, that is used in place of a range that is too small to be exact: the obstacle may then be at any
@@ -112,7 +110,7 @@ impl Map {
     /// every turn, each sonar is read in every third turn, which is about as often as a sonar that fires in turn pings.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
         self.move_to(here);
-        let Gains { least_range: least, saturates, .. } = *Gains::of(y);
+        let Gains { least_range: least, saturates, evidence, .. } = *Gains::of(y);
         let thirds = if fire_in_turn(y) { 1 } else { THIRDS };
         let third = self.third % thirds;
         self.third = (third + 1) % thirds;
@@ -129,13 +127,13 @@ impl Map {
             let centre = ping.axis(sonar);
             let (axis, from) = (centre.theta, centre.towards(centre.theta, y.ring_radius()));
             if range >= least {
-                self.pass(from, axis, (range - BEFORE).min(WITHIN));
+                self.pass(from, axis, (range - BEFORE).min(WITHIN), &evidence);
             }
             if ping.range.is_some() && range < WITHIN {
                 if range >= least {
-                    self.hit(from, axis, range, range < saturates);
+                    self.hit(from, axis, range, (evidence, range < saturates));
                 } else if !self.explains(from, axis, least) {
-                    self.hit(from, axis, INSTEAD, false);
+                    self.hit(from, axis, INSTEAD, (evidence, false));
                 }
             }
         }
@@ -143,14 +141,15 @@ impl Map {
 
     /// Marks as free the cells that a ping from this position passed in the direction of `axis`, up to the distance
     /// `free`.
-    fn pass(&mut self, from: Pose, axis: Radians, free: f64) {
-        let end = libm::floor(free / CELL).max(0.0) as i32 + 1;
+    fn pass(&mut self, from: Pose, axis: Radians, free: f64, Evidence { miss, edges, .. }: &Evidence) {
         let Cell { x: left, y: low } = self.corner;
         // A ping passes many cells. In whole numbers, each takes two additions.
         let [x, y] = [(from.x, left), (from.y, low)].map(|(at, corner)| fixed(at.0 / CELL - f64::from(corner)));
         for (degrees, begin) in RAYS {
             let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
             let (along, up) = (fixed(cos), fixed(sin));
+            let free = if degrees.abs() < EDGE { free } else { free.min(*edges) };
+            let end = libm::floor(free / CELL).max(0.0) as i32 + 1;
             let mut last = -1;
             for step in libm::floor(begin / CELL) as i32..end {
                 let (right, above) = (whole(x + step * along), whole(y + step * up));
@@ -158,18 +157,18 @@ impl Map {
                 // A cell that is repeated in succession is changed only once.
                 if is_within(right) && is_within(above) && number != last {
                     last = number;
-                    self.free(Cell { x: left + right, y: low + above });
+                    self.free(Cell { x: left + right, y: low + above }, *miss);
                 }
             }
         }
     }
 
     /// Removes the evidence of a ping that passed a cell of the map.
-    fn free(&mut self, cell: Cell) {
+    fn free(&mut self, cell: Cell, miss: u8) {
         let (row, column, shift) = place(cell);
         if let Some(byte) = self.evidence.get_mut(row).and_then(|row| row.get_mut(column)) {
             let evidence = *byte >> shift & 15;
-            *byte -= evidence.min(MISS) << shift;
+            *byte -= evidence.min(miss) << shift;
         }
     }
 
@@ -191,7 +190,13 @@ impl Map {
     /// If `is_saturated` is `true`, all cells on the arc become occupied in any case. Such an echo repeats while the
     /// robot drives along a wall that approaches its front corner, and the occupied cells that the arc still contains
     /// would hide the part of the wall ahead of them.
-    fn hit(&mut self, from: Pose, axis: Radians, range: f64, is_saturated: bool) {
+    fn hit(
+        &mut self,
+        from: Pose,
+        axis: Radians,
+        range: f64,
+        (Evidence { hit, below, .. }, is_saturated): (Evidence, bool),
+    ) {
         let cells = ARC.map(|degrees| {
             let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
             Cell::of(from.x.0 + range * cos, from.y.0 + range * sin)
@@ -200,7 +205,7 @@ impl Map {
         let is_known = most >= OCCUPIED;
         self.once(cells.into_iter(), |evidence| match is_known {
             _ if is_saturated => evidence.max(OCCUPIED),
-            true if evidence + 2 >= most => (evidence + HIT).min(MOST),
+            true if evidence + below >= most => (evidence + hit).min(MOST),
             true => evidence,
             false => OCCUPIED,
         });

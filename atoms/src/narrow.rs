@@ -76,7 +76,7 @@ impl Narrow {
 
     /// Returns the input that keeps the robot away from obstacles whose echoes it no longer receives, while it drives
     /// around them in the direction `chosen`; `None` if there is enough room.
-    pub(crate) fn round<Y: DiffDrive>(
+    pub(crate) fn round<Y: DiffDrive + SonarRing>(
         &self,
         y: &Y,
         here: Pose,
@@ -93,7 +93,13 @@ impl Narrow {
     }
 
     /// Returns the input of a robot at `here`; `None` if the tangent rule chooses the input.
-    pub(crate) fn input<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, mut ahead: Ahead) -> Option<Twist> {
+    pub(crate) fn input<Y: DiffDrive + SonarRing>(
+        &mut self,
+        y: &Y,
+        here: Pose,
+        t: Nanos,
+        mut ahead: Ahead,
+    ) -> Option<Twist> {
         let more = if self.way.is_some() { LEAVES } else { Meters(0.0) };
         let is_free = ahead.free.is_some_and(|(free, asked)| free.0 >= asked.0 + more.0);
         if is_free && self.has_room(y, here) && (self.way.is_none() || self.is_clear(y, here, &ahead.goal)) {
@@ -122,7 +128,7 @@ impl Narrow {
     /// The function is not inlined, like [`Self::has_room`], so that its surroundings are not on the stack at the same
     /// time as the map of [`way`].
     #[inline(never)]
-    fn towards<Y: DiffDrive>(
+    fn towards<Y: DiffDrive + SonarRing>(
         &self,
         y: &Y,
         here: Pose,
@@ -151,7 +157,7 @@ impl Narrow {
 
     /// Returns `true` if nothing on the map is near the body.
     #[inline(never)]
-    fn has_room<Y: DiffDrive>(&self, y: &Y, here: Pose) -> bool {
+    fn has_room<Y: DiffDrive + SonarRing>(&self, y: &Y, here: Pose) -> bool {
         Surroundings::of(y, &self.map, here).now() > ROOM
     }
 }

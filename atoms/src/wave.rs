@@ -2,9 +2,10 @@
 //! the goal is not on the map, from the cells at the map's edge through which a way leads to the goal. Cells beside
 //! obstacles cost more.
 
-use mdle_runtime::capability::DiffDrive;
+use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Pose};
 
+use crate::gains::{Factors, Gains};
 use crate::map::{self, CELLS, Cell, Map};
 
 /// Number of cells along a side of the wave: the cells along a side of the map, and one more cell at each end.
@@ -15,11 +16,10 @@ const STRAIGHT: u16 = 5;
 const ACROSS: u16 = 7;
 /// Mask of the bits of a cell that contain its distance from the end of the way; the other bits contain its class.
 const DISTANCE: u16 = 0x1fff;
-/// Classes of cells. For each class, the first number is the room beside the body, in centimetres, below which a cell
-/// belongs to the class. The second number is the factor of the cost of such a cell. A body does not pass a cell of the
-/// first class. From class `AROUND` on, the room is measured from the smallest circle around the body, inside which a
-/// rectangle can turn.
-const CLASSES: [(i32, u16); 8] = [(2, 0), (4, 10), (6, 6), (8, 5), (2, 4), (10, 4), (16, 2), (i32::MAX, 1)];
+/// For each class of cells, the room beside the body, in centimetres, below which a cell belongs to the class. A body
+/// does not pass a cell of the first class. From class `AROUND` on, the room is measured from the smallest circle
+/// around the body, inside which a rectangle can turn.
+const CLASSES: [i32; 8] = [2, 4, 6, 8, 2, 10, 16, i32::MAX];
 /// First class whose room is measured from the smallest circle around the body.
 const AROUND: usize = 4;
 /// First class in which any body can turn freely; a disc can also turn in lower classes.
@@ -59,6 +59,7 @@ pub(crate) struct Ends {
 /// The distance of each cell from the end of the cheapest way, and the class of each cell.
 pub(crate) struct Wave {
     rows: [Row; SIDE],
+    factors: &'static Factors,
 }
 
 /// A row of cells.
@@ -96,14 +97,15 @@ fn class(value: u16) -> usize {
     (value >> 13) as usize
 }
 
-fn factor(value: u16) -> u16 {
-    CLASSES.get(class(value)).map_or(0, |class| class.1)
+/// Returns the factor of the cost of a cell with this value; 0 if the body does not pass the cell.
+fn factor(factors: &Factors, value: u16) -> u16 {
+    factors.get(class(value)).copied().unwrap_or(0)
 }
 
 /// Returns the factor of a step's cost in a cell with this value; in a cell that the body does not pass, a step costs
 /// more than any distance.
-fn step(value: u16) -> u16 {
-    match factor(value) {
+fn step(factors: &Factors, value: u16) -> u16 {
+    match factor(factors, value) {
         0 => NO_WAY,
         factor => factor,
     }
@@ -132,10 +134,11 @@ fn relax<'r>(
 
 impl Wave {
     /// The wave before the computation, with the maximum distance in each cell.
-    pub(crate) const NONE: Self = Self { rows: [[DISTANCE; SIDE]; SIDE] };
+    pub(crate) const NONE: Self = Self { rows: [[DISTANCE; SIDE]; SIDE], factors: &[0; CLASSES.len()] };
 
     /// Computes the wave that begins at `ends` on a map, for the body of `y`.
-    pub(crate) fn start<Y: DiffDrive>(&mut self, map: &Map, ends: &Ends, y: &Y) {
+    pub(crate) fn start<Y: DiffDrive + SonarRing>(&mut self, map: &Map, ends: &Ends, y: &Y) {
+        self.factors = &Gains::of(y).factors;
         self.measure(map, y);
         let rows = self.seed(map, ends);
         self.spread(rows);
@@ -151,12 +154,12 @@ impl Wave {
     /// Returns the cost, in centimetres, of a way that is `cells` cells long, all of them of the same class as this
     /// cell.
     pub(crate) fn cost(&self, cell: usize, cells: f64) -> i32 {
-        libm::round(f64::from(STRAIGHT * factor(self.at(cell))) * cells) as i32
+        libm::round(f64::from(STRAIGHT * factor(self.factors, self.at(cell))) * cells) as i32
     }
 
     /// Returns `true` if the body can pass the cell.
     pub(crate) fn is_free(&self, cell: usize) -> bool {
-        factor(self.at(cell)) > 0
+        factor(self.factors, self.at(cell)) > 0
     }
 
     /// Returns `true` if the body cannot turn freely in the cell.
@@ -186,9 +189,8 @@ impl Wave {
         let [half_width, radius] =
             [y.half_width(), y.body_radius()].map(|Meters(length)| libm::round(100.0 * length) as i32);
         let class_of = |room: i32| {
-            let is_below = |(class, (below, _)): (usize, &(i32, u16))| {
-                room - if class < AROUND { half_width } else { radius } < *below
-            };
+            let is_below =
+                |(class, below): (usize, &i32)| room - if class < AROUND { half_width } else { radius } < *below;
             CLASSES.iter().enumerate().position(is_below).unwrap_or(CLASSES.len() - 1)
         };
         // Most cells have little room, or the room of a map without obstacles.
@@ -254,7 +256,7 @@ impl Wave {
                 let (ahead, aside) = (goal.x.0 - x, goal.y.0 - y);
                 let is_near = ahead.abs() < near.0 && aside.abs() < near.0;
                 let (place, value) = (index(column, row), self.at(index(column, row)));
-                if !(at == end || is_near || is_border) || factor(value) == 0 {
+                if !(at == end || is_near || is_border) || factor(self.factors, value) == 0 {
                     continue;
                 }
                 let left = libm::hypot(ahead, aside);
@@ -269,23 +271,24 @@ impl Wave {
     }
 
     fn spread(&mut self, mut rows: Rows) {
+        let factors = self.factors;
         for _ in 0..PASSES {
             if rows.are_done() {
                 return;
             }
-            self.pass(&mut rows, step);
+            self.pass(&mut rows, |value| step(factors, value));
         }
     }
 
     /// Returns the next cell along the way from this cell; `None` at the end of the way.
     pub(crate) fn next(&self, cell: usize) -> Option<usize> {
         const STEPS: [(usize, u16); 4] = [(1, STRAIGHT), (SIDE, STRAIGHT), (SIDE - 1, ACROSS), (SIDE + 1, ACROSS)];
-        let (mut best, weight) = ((u16::MAX, cell), factor(self.at(cell)));
+        let (mut best, weight) = ((u16::MAX, cell), factor(self.factors, self.at(cell)));
         for (off, step) in STEPS {
             for other in [cell + off, cell.saturating_sub(off)] {
                 let value = self.at(other);
                 let total = (value & DISTANCE) + step * weight;
-                if factor(value) > 0 && total < best.0 {
+                if factor(self.factors, value) > 0 && total < best.0 {
                     best = (total, other);
                 }
             }
@@ -313,7 +316,24 @@ mod tests {
         assert!(wave.left(here).is_some_and(|left| left > 300), "a way round the walls");
         let (before, mut rows) = (wave.rows, Rows::NONE);
         (0..CELLS).for_each(|y| rows.changes(y));
-        wave.pass(&mut rows, step);
+        let factors = wave.factors;
+        wave.pass(&mut rows, |value| step(factors, value));
         assert_eq!(wave.rows, before);
+    }
+
+    /// The wall is 15 cm thick, and the doorway is 50 cm wide on the map.
+    #[test]
+    fn a_doorway_costs_a_scout_less_than_another_body() {
+        let mut map = Map::EMPTY;
+        for (x, side) in [0.6, 0.65, 0.7].into_iter().flat_map(|x| [(x, 1.0), (x, -1.0)]) {
+            map.occupy((x, 0.025 + 0.25 * side), (x, 0.025 + 1.5 * side));
+        }
+        let cost = |y: &Sensed| {
+            let (goal, mut wave) = (Pose { x: Meters(1.2), ..Pose::ORIGIN }, Wave::NONE);
+            wave.start(&map, &Ends { goal, near: Meters(0.0), from: Meters(1.2), base: 0.0 }, y);
+            wave.left(index(CELLS / 2, CELLS / 2)).expect("a way") - 120
+        };
+        let (scout, ideal) = (cost(&Sensed { confirmation: 2, ..Sensed::default() }), cost(&Sensed::default()));
+        assert!(scout + 100 < ideal, "{scout}, {ideal}");
     }
 }

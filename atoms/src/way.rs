@@ -2,7 +2,7 @@
 //! is much shorter. It drives straight through places in which it cannot turn: in the last place before them, it turns
 //! to face the first place beyond them.
 
-use mdle_runtime::capability::DiffDrive;
+use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};
 
 use crate::map::{CELLS, Cell, Map};
@@ -61,7 +61,7 @@ pub(crate) struct Next {
 /// The function is not inlined: the wave is the largest value that a law puts on the stack, so it should not remain on
 /// the stack after the function has returned.
 #[inline(never)]
-pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> Option<Next> {
+pub(crate) fn way<Y: DiffDrive + SonarRing>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> Option<Next> {
     let (goal, straight) = (&ahead.goal, here.distance(&ahead.goal).0);
     let base = (straight - EDGE).max(0.0);
     // Constructed in place: a copy would take the same space on the stack again.

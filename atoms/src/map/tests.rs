@@ -104,3 +104,31 @@ fn the_map_moves_with_the_robot_and_forgets_what_is_far() {
     assert!(!is_ahead(&map, 0.99));
     assert_eq!(map.around(y.pose, Meters(1.2)).count(), 0);
 }
+
+/// Returns `true` if a cell at the right end of an echo's arc is occupied after the echo, which has this range, and
+/// more pings of the front sonar, each given by the robot's heading, in degrees, and by its range.
+fn is_end_occupied(halves: [f64; 2], range: f64, pings: &[(f64, f64)]) -> bool {
+    let (mut y, mut map) = (Sensed { confirmation: 2, halves, ..Sensed::default() }, Map::EMPTY);
+    for (second, (degrees, range)) in (1..).zip([(0.0, range)].iter().chain(pings)) {
+        (y.now, y.pose.theta) = (Nanos(1_000_000_000 * second), Radians::from_degrees(*degrees));
+        y.ping_at(AHEAD, Some(*range), y.now);
+        take(&mut map, &y);
+    }
+    assert!(is_ahead(&map, 0.19 + range));
+    map.is_occupied(Cell::of(0.19 + range * 0.987, -range * 0.156))
+}
+
+const SCOUT: [f64; 2] = [0.205; 2];
+const ATRV: [f64; 2] = [0.315, 0.27];
+
+#[test]
+fn an_echo_of_a_scout_does_not_restore_cells_that_a_ping_passed() {
+    let pings = [(-16.0, 1.4), (0.0, 0.4)];
+    assert!(!is_end_occupied(SCOUT, 0.4, &pings) && is_end_occupied(ATRV, 0.4, &pings));
+}
+
+#[test]
+fn a_ping_of_a_scout_passes_near_cells_only_at_the_edge_of_its_cone() {
+    let is_kept = |halves, range| is_end_occupied(halves, range, &[(-16.0, 1.4)]);
+    assert!(!is_kept(SCOUT, 0.4) && is_kept(SCOUT, 0.8) && !is_kept(ATRV, 0.8));
+}
