@@ -41,6 +41,7 @@ mod stuck;
 mod swept;
 mod sync;
 mod tangent;
+mod too_near;
 #[cfg(test)]
 mod trial;
 mod turn;

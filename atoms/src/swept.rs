@@ -4,10 +4,11 @@
 
 use core::f64::consts::TAU;
 
-use mdle_runtime::capability::DiffDrive;
+use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
 use crate::map::Map;
+use crate::too_near::TooNear;
 use crate::winding::Winding;
 
 /// Maximum number of occupied cells that are considered; these are the nearest ones.
@@ -35,6 +36,9 @@ const ROUNDED: f64 = 0.03;
 const ROOM: f64 = 0.12;
 /// Distance, in metres, below which an obstacle costs five times as much.
 const CLOSE: f64 = 0.08;
+/// Cost, in metres, per metre by which an obstacle that is too near to be measured is nearer than `CLOSE`. On the map,
+/// a jamb may be 5 cm further away than it is.
+const TOO_NEAR_COSTS: f64 = 3.0;
 /// Cost, in metres, of turning on the spot or driving backwards. Such a movement must bring the robot nearer to the
 /// place by more than this.
 const STANDING_COSTS: f64 = 0.06;
@@ -61,6 +65,7 @@ pub(crate) struct Aim {
 pub(crate) struct Surroundings {
     points: [(f64, f64); POINTS],
     count: usize,
+    too_near: TooNear,
     /// Half-length of the rectangle that, extended by `radius` on all sides, is the body's outline; 0 for a disc.
     half_length: f64,
     /// Half-width of the rectangle that, extended by `radius` on all sides, is the body's outline; 0 for a disc.
@@ -70,12 +75,13 @@ pub(crate) struct Surroundings {
 
 impl Surroundings {
     /// Returns the surroundings of the body at `here`.
-    pub(crate) fn of<Y: DiffDrive>(y: &Y, map: &Map, here: Pose) -> Self {
+    pub(crate) fn of<Y: DiffDrive + SonarRing>(y: &Y, map: &Map, here: Pose) -> Self {
         let (half_length, half_width) = (y.half_length().0, y.half_width().0);
         let radius = if y.is_disc() { half_length } else { ROUNDED };
         let mut near = Self {
             points: [(0.0, 0.0); POINTS],
             count: 0,
+            too_near: TooNear::of(y, here),
             half_length: half_length - radius,
             half_width: half_width - radius,
             radius,
@@ -95,14 +101,18 @@ impl Surroundings {
 
     /// Returns the distance, in metres, between the body and the nearest occupied cell.
     pub(crate) fn now(&self) -> f64 {
-        self.room(0.0, 0.0, 0.0)
+        self.room(self.cells(), (0.0, 0.0, 0.0))
     }
 
-    /// Returns the distance, in metres, between the body and the nearest occupied cell if the body were at this pose.
+    /// Returns the occupied cells.
+    fn cells(&self) -> impl Iterator<Item = &(f64, f64)> {
+        self.points.iter().take(self.count)
+    }
+
+    /// Returns the distance, in metres, between the body and the nearest of these points if the body were at this pose.
     /// The pose is relative to the body's present pose.
-    fn room(&self, x: f64, y: f64, theta: f64) -> f64 {
+    fn room<'p>(&self, points: impl Iterator<Item = &'p (f64, f64)>, (x, y, theta): (f64, f64, f64)) -> f64 {
         let (sin, cos) = libm::sincos(theta);
-        let points = self.points.iter().take(self.count);
         let square = points.fold(f64::INFINITY, |least, (px, py)| {
             let (px, py) = (px - x, py - y);
             let along = ((px * cos + py * sin).abs() - self.half_length).max(0.0);
@@ -155,7 +165,7 @@ impl Surroundings {
                 let (sin, cos) = libm::sincos(theta);
                 (v / omega * sin, v / omega * (1.0 - cos))
             };
-            let room = self.room(x, y, theta);
+            let room = self.room(self.cells(), (x, y, theta));
             if room < kept && room <= before {
                 return None;
             }
@@ -167,13 +177,17 @@ impl Surroundings {
         let Radians(off) = Radians(libm::atan2(dy, dx) - theta).wrapped();
         let off = if back.is_some_and(|back| back * off < 0.0) { TAU - off.abs() } else { off.abs() };
         let stands = if v <= 0.0 { STANDING_COSTS } else { 0.0 };
-        let tight = if kept < 0.0 { 0.0 } else { 1.0 } * (ROOM - least).max(0.0) + 4.0 * (CLOSE - least).max(0.0);
+        let too_near = TOO_NEAR_COSTS * (CLOSE - self.room(self.too_near.places(), end)).max(0.0);
+        let tight =
+            too_near + if kept < 0.0 { 0.0 } else { 1.0 } * (ROOM - least).max(0.0) + 4.0 * (CLOSE - least).max(0.0);
         Some(libm::hypot(dx, dy) + if aim.is_straight { OFF_COSTS_STRAIGHT } else { OFF_COSTS } * off + tight + stands)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use mdle_runtime::SonarId;
+
     use super::*;
     use crate::trial::{Sensed, sized};
 
@@ -252,6 +266,18 @@ mod tests {
             twist.map(|twist| twist.omega.0)
         };
         assert_eq!((turns(1), turns(3)), (Some(0.7), Some(-0.7)));
+    }
+
+    /// An echo at the minimum range comes from 45° to the left, where the map has no obstacle.
+    #[test]
+    fn an_obstacle_too_near_to_be_measured_is_approached_slowly() {
+        let twist = |range: Option<f64>| {
+            let mut scout = Sensed { confirmation: 2, ..Sensed::default() };
+            scout.ping_at(SonarId::new(2), range, scout.now);
+            towards(&scout, 0.0, &[])
+        };
+        assert_eq!(twist(Some(0.2)), Some(Twist { v: SPEED, omega: RadiansPerSecond(0.0) }));
+        assert!(twist(Some(0.15)).is_some_and(|twist| twist.v.0 <= SPEED.0 / 2.0));
     }
 
     #[test]

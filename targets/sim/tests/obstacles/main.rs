@@ -51,6 +51,13 @@ fn a_doorway_fifteen_centimetres_wider_is_passed() {
     assert_clean("doorway", worlds::doorway, Body::Atrv, 90);
 }
 
+/// Of 288 Scouts with other seeds, 120 arrive. No ATRV-mini arrives.
+#[test]
+fn a_doorway_in_a_thick_wall_across_a_room_is_passed() {
+    assert_clean("thick", worlds::thick, Body::Ideal, 80);
+    assert_clean("thick", worlds::thick, Body::Scout, 25);
+}
+
 /// The sonars of an ATRV-mini measure no range below 15 cm. Before it drove away in an arc, it touched walls 1 to 12 cm
 /// beside it in 271 of 600 runs.
 #[test]

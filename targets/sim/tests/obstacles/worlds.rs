@@ -43,6 +43,20 @@ pub(crate) fn doorway(body: Body, seed: u64) -> Crossing {
     ahead(seed, 6.0, &[hallway(wide), jambs].concat())
 }
 
+/// Returns a doorway, 15 cm wider than the body and up to 30 cm off the robot's way, in a wall 3 to 15 cm thick across
+/// a room that is 6 m wide.
+pub(crate) fn thick(body: Body, seed: u64) -> Crossing {
+    let mut chance = Chance::new(seed ^ 0x7c);
+    let off = chance.within(0.3);
+    let (half, to) = ((width(body) + 0.15) / 2.0, 3.03 + 0.12 * chance.unit());
+    let around = "[[wall]]\npoints = [[-1, -3], [7, -3], [7, 3], [-1, 3], [-1, -3]]\n";
+    let jamb = |side: f64| {
+        let (jamb, end) = (off + side * half, 3.0 * side);
+        format!("[[wall]]\npoints = [[3, {end}], [3, {jamb}], [{to}, {jamb}], [{to}, {end}]]\n")
+    };
+    ahead(seed, 6.0, &[around, &jamb(1.0), &jamb(-1.0)].concat())
+}
+
 /// Returns a box in the middle of a hallway, with a gap on both sides that is 25 cm wider than the body.
 pub(crate) fn middle(body: Body, seed: u64) -> Crossing {
     let side = 0.3 + 0.2 * Chance::new(seed ^ 0xb0c).unit();
