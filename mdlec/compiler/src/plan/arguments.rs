@@ -11,9 +11,10 @@ use super::parameters::Parameters;
 use crate::alphabet::{Declaration, DeclarationKind, Param, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Number};
-pub(super) use examples::example;
 use examples::swapped;
+pub(super) use examples::{example, sonar};
 use numbers::bits;
+pub(super) use wrong_count::completed;
 use wrong_count::wrong_count;
 
 /// The arguments of a quark, and the text of the arguments in the quark text.
@@ -164,7 +165,7 @@ impl Fitting<'_> {
     /// Converts an argument; `bare` is the unit of a number that is written without a unit.
     fn argument(&self, arg: &Arg, param: &Param, bare: Option<Unit>) -> Fitted {
         if let (Arg::Name(name), ParameterKind::Sonar) = (arg, param.kind)
-            && let Some(number) = examples::sonar(name)
+            && let Some(number) = sonar(name)
         {
             return self.whole(&number, param);
         }

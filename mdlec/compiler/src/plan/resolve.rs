@@ -178,10 +178,14 @@ impl<'r, 'a> Resolver<'r, 'a> {
 
     fn sequence(&mut self, elements: &[Element<'a>], frame: Framing) -> Vec<Node> {
         let mut nodes = Vec::with_capacity(elements.len());
-        for (at, element) in elements.iter().enumerate() {
-            let next = elements.get(at + 1).filter(|_| element.marks.is_none());
-            self.next = next.map(|next| next.span);
-            self.element(element, frame, &mut nodes);
+        let mut rest = elements;
+        while let [element, others @ ..] = rest {
+            let read = self.bare_law(rest);
+            if read == 0 {
+                self.next = others.first().filter(|_| element.marks.is_none()).map(|next| next.span);
+                self.element(element, frame, &mut nodes);
+            }
+            rest = rest.get(read.max(1)..).unwrap_or(&[]);
         }
         nodes
     }

@@ -8,6 +8,7 @@ mod groups;
 mod labels;
 mod parameters;
 mod plan_names;
+mod ranges;
 
 use super::number::split;
 use super::site::Site;
@@ -20,10 +21,11 @@ use files::at_file_level;
 use groups::head_of_group;
 use labels::{label_and_equals, label_behind, label_in_quotes, label_of_after};
 use parameters::parameters;
+use ranges::range_of_time;
 
 /// Returns the message about the first common mistake that is found at the site.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 21] = [
+    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 22] = [
         head_of_group,
         square_brackets,
         decimal_comma,
@@ -32,6 +34,7 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
         plan_name,
         label_and_equals,
         atom_condition,
+        range_of_time,
         comma,
         atom_law,
         loop_count,

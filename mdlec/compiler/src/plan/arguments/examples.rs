@@ -38,7 +38,7 @@ pub(in crate::plan) fn example(param: &Param) -> Option<String> {
 
 /// Returns the number of the sonar whose range the name denotes, as in the paper's `align r_7 r_9`; `None` if the name
 /// does not denote a range.
-pub(super) fn sonar<'s>(name: &Name<'s>) -> Option<Number<'s>> {
+pub(in crate::plan) fn sonar<'s>(name: &Name<'s>) -> Option<Number<'s>> {
     let digits = name.node.strip_prefix('r').map(|index| index.strip_prefix('_').unwrap_or(index))?;
     let is_index = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
     is_index.then(|| Number::new(digits, name.span))

@@ -59,17 +59,26 @@ pub(super) fn wrong_count(call: &Call, declaration: &Declaration, needed: usize)
     let missing = declaration.params.get(call.args.len()..needed).unwrap_or_default();
     let names: Vec<_> = missing.iter().map(|param| format!("`{}`", param.name)).collect();
     let report = report(format!("{} {} missing", names.join(" and "), if names.len() == 1 { "is" } else { "are" }));
-    let examples: Option<Vec<_>> = missing.iter().map(example).collect();
-    let are_sonars = declaration.params.iter().all(|param| param.kind == ParameterKind::Sonar);
-    if are_sonars {
-        // Two sonars that look at one wall are two apart, as in the paper's `align 7 9`.
-        let sonars = (first_sonar(call)..).step_by(2).take(most).map(|sonar| format!(" {}", sonar % SONARS));
-        return report.fix("for instance {}", call.span, format!("{}{}", call.name, sonars.collect::<String>()));
-    }
-    match examples {
-        Some(examples) => report.fix("for instance {}", call.span, format!("{} {}", written(call), examples.join(" "))),
+    match completed(call, declaration) {
+        Some(completed) => report.fix("for instance {}", call.span, completed),
         None => report,
     }
+}
+
+/// Returns the text of a call with an example for each argument that it lacks; `None` if only the user can know one.
+pub(in crate::plan) fn completed(call: &Call, declaration: &Declaration) -> Option<String> {
+    let params = &declaration.params;
+    let needed = params.iter().filter(|param| param.default.is_none()).count();
+    let Some(missing) = params.get(call.args.len()..needed).filter(|missing| !missing.is_empty()) else {
+        return Some(written(call));
+    };
+    if params.iter().all(|param| param.kind == ParameterKind::Sonar) {
+        // Two sonars that look at one wall are two apart, as in the paper's `align 7 9`.
+        let sonars = (first_sonar(call)..).step_by(2).take(params.len()).map(|sonar| format!(" {}", sonar % SONARS));
+        return Some(format!("{}{}", call.name, sonars.collect::<String>()));
+    }
+    let examples: Vec<_> = missing.iter().map(example).collect::<Option<_>>()?;
+    Some(format!("{} {}", written(call), examples.join(" ")))
 }
 
 /// Returns the number of the sonar that a call names first, or of one to the left of the robot.

@@ -4,8 +4,8 @@
 use super::Resolver;
 use crate::alphabet::{self, DeclarationKind, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::arguments::{kind_words, written};
-use crate::syntax::tree::{self, Call, ConditionNode, Element, Frame, Primary};
+use crate::plan::arguments::{completed, kind_words, sonar, written};
+use crate::syntax::tree::{self, Arg, Call, ConditionNode, Element, Frame, Name, Primary};
 use crate::syntax::{foreign, nearest_unit};
 
 impl<'a> Resolver<'_, 'a> {
@@ -74,6 +74,30 @@ impl<'a> Resolver<'_, 'a> {
         1
     }
 
+    /// Reports a law outside of an atom whose sonars are written as their ranges, as in `align r_7 r_9` and
+    /// `align r_7(t) r_9(t)`, where all three are read as plans used by name. Returns the number of elements that
+    /// belong to the mistake.
+    pub(super) fn bare_law(&mut self, elements: &[Element<'a>]) -> usize {
+        let [Element { primary: Primary::Ref(law), marks: None, .. }, ranges @ ..] = elements else { return 0 };
+        let mut declarations = self.quarks.alphabet().declarations_of(law.name);
+        let is_plan = |name| self.definitions.get(name).is_some();
+        let is_law = declarations.any(|declaration| declaration.kind == DeclarationKind::Control);
+        if !is_law || !law.args.is_empty() || is_plan(law.name) {
+            return 0;
+        }
+        let range = |element: &Element<'a>| {
+            let Element { primary: Primary::Ref(range), marks: None, .. } = element else { return None };
+            let name = Name { node: range.name, span: range.name_span() };
+            let is_time = matches!(range.args, [] | [Arg::Name(Name { node: "t", .. })]);
+            (is_time && !is_plan(range.name) && sonar(&name).is_some()).then_some((Arg::Name(name), range.span))
+        };
+        let (args, spans): (Vec<_>, Vec<_>) = ranges.iter().map_while(range).unzip();
+        let Some(last) = spans.last() else { return 0 };
+        let unknown = self.unknown_plan(&Call { args: &args, span: law.span.to(*last), ..**law });
+        self.found.push(unknown);
+        1 + args.len()
+    }
+
     /// Reports a unit after a space, as in `FRAME 90 deg (Atom …)`, where it is read as a plan used by name.
     pub(super) fn unit_apart(&self, element: &Element<'a>) -> Option<Diagnostic> {
         let (Some(Frame::Turned(number)), Primary::Ref(call)) = (element.frame(), &element.primary) else {
@@ -109,7 +133,7 @@ impl<'a> Resolver<'_, 'a> {
         if let Some(quark) = self.quarks.alphabet().declarations_of(name).next() {
             let message = format!("`{name}` is {}, but an atom or a plan is expected here", kind_words(quark.kind));
             let report = Diagnostic::new(Code::E0204, message, span, "a quark runs in an atom");
-            let written = written(call);
+            let written = completed(call, quark).unwrap_or_else(|| written(call));
             let (words, element) = match quark.kind {
                 DeclarationKind::Control => ("say when it ends: {}", format!("(Atom (wait 10) {written})")),
                 DeclarationKind::Interrupt => ("say what runs until then: {}", format!("(Atom ({written}) stop)")),

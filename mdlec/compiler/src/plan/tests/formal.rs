@@ -102,6 +102,30 @@ fn sonars_of_laws_may_be_written_as_their_ranges() {
 }
 
 #[test]
+fn ranges_of_time_are_written_as_sonars() {
+    let help = |plan: &str| {
+        let judged = judged(plan, None);
+        let help = judged.lines().filter_map(|line| line.trim().strip_prefix("= help: ")).collect::<Vec<_>>();
+        assert!(judged.contains("error: 1 error") || judged.matches("error[").count() == 1, "{judged}");
+        help.join("\n")
+    };
+    for (plan, text) in [
+        ("{ P (bumper) (Atom (null) align(r_7(t), r_9(t))) }", "write `align(r_7, r_9)`"),
+        ("{ P (bumper) (Atom (null) align r_7(t) r_9(t)) }", "write `align r_7 r_9`"),
+        ("{ P (bumper) (Atom (null) align 7 r_9(t)) }", "write `align 7 r_9`"),
+        ("{ P (bumper) (Atom (null) (align r_7 r9(t))) }", "write `align r_7 r9`"),
+        ("{ P (bumper) (align(r_7(t), r_9(t)), null) }", "write `align(r_7, r_9)`"),
+        ("{ P (bumper) align r_7(t) r_9(t) (Atom (null) stop) }", "say when it ends: `(Atom (wait 10) align r_7 r_9)`"),
+        ("{ P (bumper) align r_7 r_9 }", "say when it ends: `(Atom (wait 10) align r_7 r_9)`"),
+        ("{ P (bumper) align }", "say when it ends: `(Atom (wait 10) align 3 5)`"),
+    ] {
+        assert_eq!(help(plan), text, "{plan}");
+    }
+    let condition = judged("{ P (bumper) (Atom (atIsection r_7(t)) stop) }", None);
+    assert!(!condition.contains("not functions of time"), "{condition}");
+}
+
+#[test]
 fn strings_without_a_name_are_one_plan_of_a_file() {
     let text = "((stop, bumper)(stop, wait 1), wait 3)σ_null";
     assert_eq!(compiled(text)[0].plan.root.name, "Plan");
