@@ -45,11 +45,27 @@ fn fitted(
     if call.args.len() < needed || call.args.len() > params.len() {
         return Err(vec![wrong_count(call, declaration, needed)]);
     }
+    let (arguments, found) = converted(call, declaration, robot, parameters);
+    if found.is_empty() {
+        return Ok(arguments);
+    }
+    let fits = |call: &Call| converted(call, declaration, robot, parameters).1.is_empty();
+    let only = swapped(call, &found, fits);
+    Err(only.map_or(found, |only| vec![only]))
+}
+
+/// Converts the arguments of a call that has enough of them. Returns those that fit, and the errors in the others.
+fn converted(
+    call: &Call,
+    declaration: &Declaration,
+    robot: &str,
+    parameters: &Parameters<'_>,
+) -> (Arguments, Vec<Diagnostic>) {
     let mut arguments = Arguments { values: Vec::new(), words: Vec::new() };
     let mut found = Vec::new();
     let fitting = Fitting { declaration, robot };
     let none = Parameters::default();
-    for (index, param) in params.iter().enumerate() {
+    for (index, param) in declaration.params.iter().enumerate() {
         let fitted = match (call.args.get(index), &param.default) {
             (Some(arg), _) => fitting.given(arg, param, parameters),
             (None, Some(digits)) => {
@@ -66,11 +82,7 @@ fn fitted(
             Err(diagnostic) => found.push(*diagnostic),
         }
     }
-    match swapped(call, &found, |swapped| fitted(swapped, declaration, robot, parameters).is_ok()) {
-        Some(swapped) => Err(vec![swapped]),
-        None if found.is_empty() => Ok(arguments),
-        None => Err(found),
-    }
+    (arguments, found)
 }
 
 /// Returns the number of errors in the call if it is a call of this declaration: arguments that are missing,

@@ -55,18 +55,25 @@ pub(super) fn bits_apart(call: &Call, declaration: &Declaration) -> Option<Strin
     (bits.len() == *length as usize).then(|| format!("{} {bits}", call.name))
 }
 
-/// Reports two arguments that are in the wrong order, as shown by their units.
+/// Reports two neighbouring arguments that are in the wrong order, as shown by the unit of one of them at least.
 pub(super) fn swapped(call: &Call, found: &[Diagnostic], fits: impl Fn(&Call) -> bool) -> Option<Diagnostic> {
-    let [first, second] = call.args else { return None };
-    if found.len() != 2 || found.iter().any(|found| found.code != Code::E0303) {
+    if found.is_empty() || found.iter().any(|found| found.code != Code::E0303) {
         return None;
     }
-    let args = [*second, *first];
-    let swapped = Call { args: &args, ..*call };
+    let is_wrong = |arg: &Arg<'_>| found.iter().any(|found| found.span() == Some(arg.span()));
+    let pair = |at: usize| {
+        let (first, second) = (call.args.get(at)?, call.args.get(at + 1)?);
+        let wrong = [first, second].into_iter().filter(|arg| is_wrong(arg)).count();
+        let mut args = call.args.to_vec();
+        args.swap(at, at + 1);
+        let swapped = Call { args: &args, ..*call };
+        (wrong == found.len() && fits(&swapped)).then_some((first, second))
+    };
+    let (first, second) = (0..call.args.len()).find_map(pair)?;
     let span = first.span().to(second.span());
     let message = format!("the arguments of `{}` are in the other order", call.name);
-    let arguments = written(&swapped).split_once(' ')?.1.to_owned();
-    fits(&swapped).then(|| Diagnostic::new(Code::E0303, message, span, "swap these").fix("write {}", span, arguments))
+    let arguments = written(&Call { args: &[*second, *first], ..*call }).split_once(' ')?.1.to_owned();
+    Some(Diagnostic::new(Code::E0303, message, span, "swap these").fix("write {}", span, arguments))
 }
 
 #[cfg(test)]
