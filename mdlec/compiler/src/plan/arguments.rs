@@ -3,6 +3,7 @@
 mod examples;
 mod numbers;
 mod ranges;
+mod sonars;
 mod units;
 mod wrong_count;
 
@@ -14,6 +15,7 @@ use crate::syntax::tree::{Arg, Call, Number};
 use examples::swapped;
 pub(super) use examples::{example, sonar};
 use numbers::bits;
+pub(super) use sonars::walls;
 pub(super) use wrong_count::completed;
 use wrong_count::wrong_count;
 
@@ -50,7 +52,7 @@ fn fitted(
         return Ok(arguments);
     }
     let fits = |call: &Call| converted(call, declaration, robot, parameters).1.is_empty();
-    let only = swapped(call, &found, fits);
+    let only = swapped(call, &found, fits).or_else(|| sonars::two_names(call, declaration, &found));
     Err(only.map_or(found, |only| vec![only]))
 }
 
@@ -240,6 +242,9 @@ impl Fitting<'_> {
         let message = format!("expected {}, {found}", param.kind.words());
         let here = format!("`{}` of `{}` is {}", param.name, self.declaration.name, param.kind.words());
         let diagnostic = Diagnostic::new(Code::E0302, message, arg.span(), here);
+        if param.kind == ParameterKind::Sonar {
+            return sonars::looks(diagnostic, arg);
+        }
         match (example(param), arg) {
             (Some(example), Arg::Name(here)) if here.node == "here" => diagnostic
                 .fix("for instance {}", arg.span(), example)

@@ -98,6 +98,7 @@ fn types_of_arguments() {
   (Atom (sync 7) go 20 \"fast\")
   (Atom (atIsection 0121) align 1.5 2)
   (Atom (atIsection 100) align left 2)
+  (Atom (wait 1) align left right)
   (Atom (atIsection 0100cm) goAvoid(heading))
   (Atom (wait 1) goAvoid(90 module))
 }"
@@ -125,6 +126,7 @@ fn ranges_of_arguments() {
         "{ P
   (Atom (wait -1) align 7 16)
   (Atom (wait 1e11) go 1e999 0)
+  (Atom (stuck 1e11) goAvoid 0 4)
 }"
     );
 }

@@ -2,6 +2,7 @@
 
 use super::examples::example;
 use super::ranges::{limit, meant_in_range};
+use super::sonars::DIRECTIONS;
 use super::{Fitted, Fitting, Value};
 use crate::alphabet::{Origin, Param, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
@@ -43,8 +44,7 @@ impl Fitting<'_> {
             return Err(self.wrong_unit(number, param).into());
         }
         let Some(decimal) = Decimal::parse(number.digits()).filter(Decimal::is_whole) else {
-            let message = format!("expected {}, found `{}`", param.kind.words(), number.digits());
-            return Err(Diagnostic::new(Code::E0302, message, number.span, "not a whole number").into());
+            return Err(not_whole(number, param).into());
         };
         let text = decimal.to_string();
         self.in_range(number, param, decimal.to_f64())?;
@@ -59,8 +59,7 @@ impl Fitting<'_> {
         let Some(whole) = text.parse::<i64>().ok().filter(|whole| allowed.contains(whole)) else {
             let message = format!("expected {}, found `{}`", param.kind.words(), number.digits());
             let report = Diagnostic::new(Code::E0304, message, number.span, "out of range");
-            let help = "sonar 0 looks ahead, 4 left, 8 back, 12 right";
-            return Err(if is_sonar { report.help(help) } else { report }.into());
+            return Err(if is_sonar { report.help(DIRECTIONS) } else { report }.into());
         };
         let value = match (param.kind, u8::try_from(whole)) {
             (ParameterKind::Sonar, Ok(sonar)) => Value::Sonar(sonar),
@@ -95,7 +94,8 @@ impl Fitting<'_> {
             return Err(meant_in_range(Diagnostic::new(Code::E0402, message, number.span, here), number, param).into());
         }
         let message = format!("`{quark}` takes `{}` from {} to {}{unit}", param.name, limit(least), limit(most));
-        Err(meant_in_range(Diagnostic::new(Code::E0304, message, number.span, here), number, param).into())
+        let report = meant_in_range(Diagnostic::new(Code::E0304, message, number.span, here), number, param);
+        Err(too_long(report, number, param, quark).into())
     }
 
     /// Reports a number that is the only value excluded from the parameter's range.
@@ -128,6 +128,13 @@ impl Fitting<'_> {
             None => report.help("write it without a unit"),
         }
     }
+}
+
+/// Reports a number with digits after its dot where a whole number is expected.
+fn not_whole(number: &Number, param: &Param) -> Diagnostic {
+    let message = format!("expected {}, found `{}`", param.kind.words(), number.digits());
+    let report = Diagnostic::new(Code::E0302, message, number.span, "not a whole number");
+    if param.kind == ParameterKind::Sonar { report.help(DIRECTIONS) } else { report }
 }
 
 fn not_a_number(number: &Number) -> Diagnostic {
@@ -163,4 +170,16 @@ fn converted(exact: &Decimal, from: Unit, to: Unit) -> f64 {
         return exact.to_f64() * from.family_to_si() / to.family_to_si() / f64::from(to.factor);
     }
     exact.scaled(1, -to.exponent).to_f64() / f64::from(to.factor)
+}
+
+/// Appends help to a message about a time that is too long: the text that waits for ever, or an example of a time.
+fn too_long(report: Diagnostic, number: &Number, param: &Param, quark: &str) -> Diagnostic {
+    if param.kind != ParameterKind::Time || number.digits().starts_with('-') {
+        return report;
+    }
+    match example(param) {
+        _ if quark == "wait" => report.fix("to wait for ever write {}", number.span, "inf"),
+        Some(example) => report.fix("for instance {}", number.span, example),
+        None => report,
+    }
 }

@@ -3,6 +3,7 @@
 use mdle_runtime::SONARS;
 
 use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::arguments::walls;
 use crate::plan::{Atom, Node, Plan, Value};
 
 /// Warns about every `align` that compares a sonar with itself or with the one that looks in the opposite direction.
@@ -33,9 +34,5 @@ fn warning(plan: &Plan, atom: &Atom) -> Option<Diagnostic> {
         _ => return None,
     };
     let lint = Diagnostic::new(Code::W0210, message, atom.span, "write two sonars that look at the same wall");
-    Some(
-        lint.help(
-            "for a wall on the left `align 3 5`, on the right `align 11 13`, ahead `align 15 1`, behind `align 7 9`",
-        ),
-    )
+    Some(lint.help(walls(&law.name)))
 }
