@@ -99,6 +99,10 @@ fn faults_have_their_place() {
         "rough = -0.1",
         "rough = nan",
         "rough = \"very\"",
+        "rough = 50%",
+        "rough = half",
+        "ruogh = 0.5",
+        "[[disc]]\ncentre = [0, 0]\nradius = 2m",
         "[[wall]]\npoints = [[0, 0], [1, 0]]\nrough = 2",
         "[[box]]\nmin = [0, 0]\nmax = [1, 1]\nrough = -0.1",
         "[[disc]]\nrough = nan\ncentre = [0, 0]\nradius = 1",
@@ -122,8 +126,8 @@ fn faults_have_their_place() {
     .map(fault);
     insta::assert_snapshot!(faults.join("\n"), @r#"
     room.toml:3:1: missing comma between array elements, expected `,`
-    room.toml:1:3: unknown field `wal`, expected one of `units`, `rough`, `start`, `goal`, `charger`, `t60`, `sound`, `wall`, `box`, `disc`, `door`
-    room.toml:2:1: unknown field `nmae`, expected one of `name`, `points`, `rough`
+    room.toml:1:3: unknown field `wal`, expected one of `units`, `rough`, `start`, `goal`, `charger`, `t60`, `sound`, `wall`, `box`, `disc`, `door`; did you mean `wall`?
+    room.toml:2:1: unknown field `nmae`, expected one of `name`, `points`, `rough`; did you mean `name`?
     room.toml:1:1: missing field `points`
     room.toml:2:10: a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`
     room.toml:2:27: a wall of length zero: the point before it is (1, 0) too
@@ -154,7 +158,11 @@ fn faults_have_their_place() {
     room.toml:1:9: `rough` is 2; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:1:9: `rough` is -0.1; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:1:9: `rough` is NaN; expected 0, for smooth surfaces, to 1, for those heard at any angle
-    room.toml:1:9: `rough`: invalid type: string "very", expected a number
+    room.toml:1:9: `rough`: invalid type: string "very", expected a number from 0 to 1, as in `rough = 0.5`
+    room.toml:1:9: `rough`: expected a number from 0 to 1, as in `rough = 0.5`
+    room.toml:1:9: `rough`: expected a number from 0 to 1, as in `rough = 0.5`
+    room.toml:1:1: unknown field `ruogh`, expected one of `units`, `rough`, `start`, `goal`, `charger`, `t60`, `sound`, `wall`, `box`, `disc`, `door`; did you mean `rough`?
+    room.toml:3:10: `radius`: expected a number without a unit, as in `radius = 2`
     room.toml:3:9: `rough` is 2; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:4:9: `rough` is -0.1; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:2:9: `rough` is NaN; expected 0, for smooth surfaces, to 1, for those heard at any angle

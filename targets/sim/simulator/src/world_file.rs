@@ -6,6 +6,7 @@
 mod outlines;
 mod sounds;
 mod text;
+mod unreadable;
 
 use std::ops::Range;
 
@@ -17,6 +18,7 @@ use crate::world::World;
 use crate::world_error::WorldError;
 use outlines::{Stands, Unit};
 use text::WorldText;
+use unreadable::unreadable;
 
 /// Maximum size of the text, in bytes; parsing takes up to 70 times the size in memory.
 const BYTES_MOST: usize = 8 << 20;
@@ -41,12 +43,7 @@ fn read(file: &str, text: &str) -> Result<World, Wrong> {
         let bytes = text.len();
         return Err(Wrong(None, format!("a world of {bytes} bytes is too large; expected at most {BYTES_MOST}")));
     }
-    let written: WorldText = toml::from_str(text).map_err(|error| {
-        // Uses the terms that the author of the file knows.
-        let what = error.message().replace('\n', " ").replace("expected f64", "expected a number");
-        let key = error.span().and_then(|span| key_before(text.get(..span.start)?));
-        Wrong(error.span(), key.map_or_else(|| what.clone(), |key| format!("`{key}`: {what}")))
-    })?;
+    let written: WorldText = toml::from_str(text).map_err(|error| unreadable(text, &error))?;
     let unit = Unit::of(written.units.as_ref())?;
     let rough = outlines::rough(written.rough.as_ref(), 0.0)?;
     let start = written.start.as_ref().map_or(Ok(Pose::ORIGIN), |start| unit.start(&start.get_ref().0))?;
@@ -84,14 +81,6 @@ fn read(file: &str, text: &str) -> Result<World, Wrong> {
         return Err(Wrong::at(&text.get_ref().0.at, what));
     }
     Ok(world)
-}
-
-/// Returns the key whose value follows `before`; `None` if no value follows it.
-fn key_before(before: &str) -> Option<&str> {
-    let assigned = before.trim_end().strip_suffix('=')?.trim_end();
-    let is_part = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-');
-    let from = assigned.rfind(|letter| !is_part(letter)).map_or(0, |at| at + 1);
-    assigned.get(from..).filter(|key| !key.is_empty())
 }
 
 /// Returns the line and column of a byte of `text`, counted from 1; columns count characters.
