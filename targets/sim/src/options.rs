@@ -202,7 +202,8 @@ pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
     let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == name);
     let body = body.ok_or_else(|| format!("--body {name}: expected `ideal`, `scout` or `atrv`"))?;
     let text = matches.get_one::<String>("without").map_or("", String::as_str);
-    let parts = text.split(',').map(str::trim).filter(|name| !name.is_empty());
+    // An empty text leaves nothing out.
+    let parts = text.split(',').map(str::trim).filter(|_| !text.trim().is_empty());
     let without = parts.map(|name| {
         let found = PARTS.iter().find(|(known, _)| *known == name).map(|(_, part)| *part);
         found.ok_or_else(|| {

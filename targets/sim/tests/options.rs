@@ -186,9 +186,11 @@ fn a_body_and_its_parts_are_named() {
     };
     assert!(connect(&["--body", "scout", "--without", "specular, slip,order", "--seed", "3"]).is_ok());
     assert!(connect(&["--body", "atrv", "--without", ""]).is_ok());
-    let sentences = [&["--body", "pioneer"][..], &["--without", "order,lobes"]].map(refused);
+    let sentences =
+        [&["--body", "pioneer"][..], &["--without", "order,lobes"], &["--without", "lobe,,slip"]].map(refused);
     insta::assert_snapshot!(sentences.join("\n"), @r#"
     --body pioneer: expected `ideal`, `scout` or `atrv`
     --without order,lobes: "lobes" is no part of a body; expected some of lobe, specular, minimum, steps, noise, outliers, order, slip
+    --without lobe,,slip: "" is no part of a body; expected some of lobe, specular, minimum, steps, noise, outliers, order, slip
     "#);
 }
