@@ -14,6 +14,9 @@ use mdle_simulator::{Form, Goal, Make, PARTS, Simulated, Start, StartError, Star
 use crate::observed::{Observed, Sounds};
 use crate::options;
 
+/// Number of seeds of a batch whose random starts are found before the first run.
+const STARTS_BEFORE: usize = 1000;
+
 /// A world, the robot to simulate in it, and the robot's start pose.
 struct Setup {
     world: Arc<World>,
@@ -47,6 +50,8 @@ pub(crate) fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Bat
     if first.checked_add(runs.get() - 1).is_none() {
         return Err(format!("--seed {first}: there are not so many seeds; the last is {}", u64::MAX));
     }
+    // A batch is refused as its run alone is, and before the runs of the other seeds.
+    (first..).zip(0..runs.get()).take(STARTS_BEFORE).try_for_each(|(seed, _)| setup.placed(Some(seed)).map(drop))?;
     let given = options::given(matches);
     Ok(Some(Batch {
         first,
@@ -98,20 +103,19 @@ impl Setup {
         format!("world {world}, body {body}{without}, {seed}")
     }
 
+    /// Returns the start pose of the run with this seed.
+    fn placed(&self, seed: Option<u64>) -> Result<Pose, String> {
+        let Some(noise) = self.noise else { return Ok(self.start) };
+        let seed = seed.ok_or("--start-noise: by which chance? Give a seed, as in `--seed 1`")?;
+        noise.pose(&self.start, seed, self.make.form(), &self.world, &self.walls).map_err(|error| {
+            format!("--start-noise: no random start has room; the last one tried: {error}; give less, as in `0.1,5`")
+        })
+    }
+
     /// Returns the robot for the run with this seed, which determines the errors and the start pose.
     fn robot(&self, seed: Option<u64>) -> Result<Observed, String> {
         let make = Make { seed, ..self.make.clone() };
-        let start = match (self.noise, seed) {
-            (Some(noise), Some(seed)) => {
-                noise.pose(&self.start, seed, make.form(), &self.world, &self.walls).map_err(|error| {
-                    format!(
-                        "--start-noise: no random start has room; the last one tried: {error}; give less, as in `0.1,5`"
-                    )
-                })?
-            }
-            (Some(_), None) => return Err("--start-noise: by which chance? Give a seed, as in `--seed 1`".to_owned()),
-            (None, _) => self.start,
-        };
+        let start = self.placed(seed)?;
         let robot = Simulated::with(&make, &self.world, start, self.period).map_err(|error| error.to_string())?;
         let sounds = Sounds { world: Arc::clone(&self.world), seed: seed.unwrap_or_default() };
         Ok(Observed::from(robot.charged(self.charge)).judged_by(self.goal).among(sounds))

@@ -63,6 +63,9 @@ fn a_noise_that_finds_no_start_is_named() {
     fs::write(&cell, around).expect("a file of our own");
     let world = cell.to_str().expect("UTF-8");
     let sentence = refused(&["--world", world, "--body", "scout", "--seed", "1", "--start-noise", "50,180"]);
+    let runs = matches(&["--world", world, "--body", "scout", "--runs", "3", "--start-noise", "50,180"]);
+    let batch = (Sim::OBSERVATION.expect("simulated").batch)(&runs, Sim::PERIOD);
+    assert!(matches!(batch, Err(Refusal::Usage(of_batch)) if of_batch == sentence), "the same refusal");
     insta::assert_snapshot!(sentence, @"--start-noise: no random start has room; the last one tried: that is off the floor; give less, as in `0.1,5`");
 }
 
