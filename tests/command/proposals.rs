@@ -264,7 +264,7 @@ const PROPOSALS: &[(&str, &str, &str, &str)] = &[
     ),
     (
         "((go(20, 0), bumper)(turn(90), null))",
-        "`((go(20, 0), bumper)(turn(90), null), null)σ_null`",
+        "`((go(20, 0), bumper)(turn(90), null))σ_null`",
         "plans are not separated",
         "((go(20, 0), bumper)(turn(90), null), bumper)σ_null",
     ),

@@ -9,6 +9,7 @@ mod labels;
 mod parameters;
 mod plan_names;
 mod ranges;
+mod strings;
 
 use super::number::split;
 use super::site::Site;

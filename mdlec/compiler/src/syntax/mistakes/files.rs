@@ -2,6 +2,7 @@
 //! `use`.
 
 use super::plan_names::{name_before_plan, not_a_label};
+use super::strings;
 use crate::diagnostic::Diagnostic;
 use crate::syntax::foreign;
 use crate::syntax::site::Site;
@@ -75,11 +76,8 @@ pub(super) fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
             site.span(site.at, site.at),
             "",
         )),
-        Tok::LParen if site.kind(site.at + 1) == Some(Tok::LParen) => Some(
-            site.about(site.at, "expected a plan, found `(`".to_owned(), "outside of any plan")
-                .help("a string of the paper has an interrupt and ends with its mark: `((go(20, 0), bumper)(turn(90), null), null)σ_null`")
-                .help("or a plan has braces around its atoms: `{ Name (Atom (bumper) stop) }`"),
-        ),
+        Tok::LParen if strings::string(site).is_some() => strings::string(site),
+        Tok::SigmaNull => Some(strings::mark(site)),
         Tok::LParen | Tok::ExecPlan | Tok::Name(_) | Tok::Frame => Some(
             site.about(site.at, format!("expected a plan, found {}", site.found_words()), "outside of any plan").help(
                 "a file consists of plans, and a plan has braces around its atoms: `{ Name (Atom (bumper) stop) }`",

@@ -46,6 +46,10 @@ fn printed_strings() {
             "((u, x),)σ_null",
             "((u, x), (u, y), z)",
             "((u, x) (u, y), z) { A B }",
+            "(go(20, 0), bumper)",
+            "((u, x)(u, y), z)^3 ((u, x))^2 { A B }",
+            "((go(20, 0), bumper)\n(turn(90), null), null)",
+            "((u, x), (u, y",
         ],
     );
 }
