@@ -1,16 +1,22 @@
-//! Warns about a `stuck` that never fires, because no law in its scope has a goal (W0203).
+//! Warns about a `stuck` that never fires, because no law in its scope has a goal, and about one that always fires,
+//! because its time is too short for 10 cm of progress (W0203).
 
+use crate::alphabet::family_to_si;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::{Condition, Interrupt, Node, Plan};
+use crate::plan::{Condition, Interrupt, Node, Plan, Quark, Value};
 
 /// Laws of the common alphabet that report no progress towards a goal. Laws of a robot's own may report it.
 const WITHOUT_GOAL: [&str; 9] = ["go", "stop", "rotate", "turn", "advance", "align", "Follow", "slot", "path"];
+/// Progress, in metres, that begins the time of a `stuck` anew, as in `mdle-atoms`.
+const PROGRESS: f64 = 0.1;
+/// Distance of a goal, in metres, below which `goAvoid` may complete before it has made this progress.
+const FAR: f64 = 1.0;
 
-/// Warns about every `stuck` that never fires.
+/// Warns about every `stuck` that never fires, or that fires whatever the robot does.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut lint = Goals { plan, found };
-    let has_goal = lint.sequence(&plan.root.body);
-    lint.interrupt(&plan.root.interrupt, has_goal, "no law in here has a goal");
+    let fastest = lint.sequence(&plan.root.body);
+    lint.interrupt(&plan.root.interrupt, fastest, "no law in here has a goal");
 }
 
 struct Goals<'p, 'f> {
@@ -19,49 +25,74 @@ struct Goals<'p, 'f> {
 }
 
 impl Goals<'_, '_> {
-    /// Checks a sequence, and returns `true` if a law in the sequence may have a goal.
-    fn sequence(&mut self, body: &[Node]) -> bool {
-        let mut has_goal = false;
-        for node in body {
-            has_goal |= self.node(node);
-        }
-        has_goal
+    /// Checks a sequence, and returns the maximum speed, in m/s, of its laws towards their goals; 0 if none has a goal.
+    fn sequence(&mut self, body: &[Node]) -> f64 {
+        body.iter().map(|node| self.node(node)).fold(0.0, f64::max)
     }
 
-    fn node(&mut self, node: &Node) -> bool {
+    fn node(&mut self, node: &Node) -> f64 {
         match node {
             Node::Loop(repeated) => self.sequence(&repeated.body),
             Node::Scope(scope) => {
-                let has_goal = self.sequence(&scope.body);
-                self.interrupt(&scope.interrupt, has_goal, "no law in here has a goal");
-                has_goal
+                let fastest = self.sequence(&scope.body);
+                self.interrupt(&scope.interrupt, fastest, "no law in here has a goal");
+                fastest
             }
             Node::Atom(atom) => {
-                let law = self.plan.quark(atom.law);
-                // A `goAvoid` that follows a module has no goal, and does not complete.
-                let follows = law.name == "goAvoid" && !law.completes;
-                let has_goal = !follows && !WITHOUT_GOAL.contains(&law.name.as_str());
-                self.interrupt(&atom.interrupt, has_goal, "this law has no goal");
-                has_goal
+                let fastest = towards_goal(self.plan.quark(atom.law));
+                self.interrupt(&atom.interrupt, fastest, "this law has no goal");
+                fastest
             }
         }
     }
 
-    fn interrupt(&mut self, interrupt: &Interrupt, has_goal: bool, here: &str) {
-        let Some(text) = self.stuck(&interrupt.condition).filter(|_| !has_goal) else { return };
-        let lint = Diagnostic::new(Code::W0203, format!("`{text}` is never true"), interrupt.span, here);
-        self.found.push(
-            lint.help("`stuck` asks for the progress of a `goAvoid` to a point; a time ends every law: `wait 30s`"),
-        );
+    fn interrupt(&mut self, interrupt: &Interrupt, fastest: f64, here: &str) {
+        let Some(quark) = self.stuck(&interrupt.condition) else { return };
+        let text = &quark.text;
+        let lint = |message, here| Diagnostic::new(Code::W0203, message, interrupt.span, here);
+        let needed = PROGRESS / fastest;
+        if fastest <= 0.0 {
+            let help = "`stuck` asks for the progress of a `goAvoid` to a point; a time ends every law: `wait 30s`";
+            self.found.push(lint(format!("`{text}` is never true"), here).help(help));
+        } else if quark.args.first().and_then(si).is_some_and(|time| time < needed) {
+            let message = format!("`{text}` is true after its time, whatever the robot does");
+            // Upwards, so that the time that is shown is enough.
+            let needed = (needed * 1e3).ceil();
+            let here = format!("10 cm of progress take {needed} ms or more");
+            let help = "give it a time in which there is progress, such as `stuck 30s`";
+            self.found.push(lint(message, &here).help(help));
+        }
     }
 
     /// Returns the first `stuck` in a condition; `None` if there is none.
-    fn stuck(&self, condition: &Condition) -> Option<String> {
+    fn stuck(&self, condition: &Condition) -> Option<&Quark> {
         // The causes that `after` asks for are no operands: their elements have ended before.
         if let Condition::Quark(id) = condition {
-            let quark = self.plan.quark(*id);
-            return (quark.name == "stuck").then(|| quark.text.clone());
+            return Some(self.plan.quark(*id)).filter(|quark| quark.name == "stuck");
         }
         condition.children().iter().find_map(|operand| self.stuck(operand))
+    }
+}
+
+/// Returns the maximum speed, in m/s, at which a law comes nearer to its goal: 0 if it has none, and infinity if the
+/// speed is not known.
+fn towards_goal(law: &Quark) -> f64 {
+    let is_drive = law.name == "goAvoid";
+    // A `goAvoid` that follows a module has no goal, and does not complete.
+    if is_drive && !law.completes || WITHOUT_GOAL.contains(&law.name.as_str()) {
+        return 0.0;
+    }
+    let [_, range, speed] = law.args.as_slice() else { return f64::INFINITY };
+    match (si(range), si(speed)) {
+        (Some(range), Some(speed)) if is_drive && range >= FAR && speed > 0.0 => speed,
+        (_, _) => f64::INFINITY,
+    }
+}
+
+/// Returns the value of a quantity in its SI unit.
+fn si(value: &Value) -> Option<f64> {
+    match value {
+        Value::Quantity { exact, family, .. } => Some(exact.to_f64() * family_to_si(family)),
+        Value::Infinity(_) | Value::Integer(_) | Value::Sonar(_) | Value::Bits(_) | Value::Name(..) => None,
     }
 }

@@ -82,6 +82,22 @@ fn a_stuck_without_a_goal() {
 }
 
 #[test]
+fn a_stuck_without_time_for_progress() {
+    assert_judged!(
+        "{ P (bumper)
+  (Atom (stuck 0.5ms OR wait 1min) (goAvoid 0 4m))
+  { Q (stuck 0.9) (Atom (wait 5) stop) (Atom (null) (goAvoid 0 4m 10)) }
+}"
+    );
+    assert_silent(&[
+        "{ P (bumper) (Atom (stuck 0.5) (goAvoid 0 4m)) (Atom (stuck 0.1) (goAvoid 0 4m 100)) }",
+        "{ P (bumper) (Atom (stuck 0.4) (goAvoid 0 18cm)) (Atom (stuck 0.1) lead 2m 0deg 3m) }",
+        "{ P (bumper) { Q (stuck 0.6) (Atom (null) (goAvoid 0 4m 10)) (Atom (null) (goAvoid 90 4m 20)) } }",
+        "{ P (bumper) (Atom (stuck inf OR wait 9) (goAvoid 0 4m)) }",
+    ]);
+}
+
+#[test]
 fn sonars_that_no_turn_makes_equal() {
     assert_judged!(
         "{ P (bumper)
