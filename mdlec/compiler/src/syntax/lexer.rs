@@ -2,6 +2,7 @@
 //! parenthesis, records whether it touches a name.
 
 use logos::{Lexer, Logos};
+use mdle_runtime::SONARS;
 
 use super::label::label_length;
 use super::lexical;
@@ -9,6 +10,12 @@ use super::number::split;
 use super::source::{FileText, TextRange};
 use super::token::{Tok, Token};
 use crate::diagnostic::Diagnostic;
+
+/// Names of the ranges of all sonars.
+const RANGES: [&str; SONARS] = [
+    "r_0", "r_1", "r_2", "r_3", "r_4", "r_5", "r_6", "r_7", "r_8", "r_9", "r_10", "r_11", "r_12", "r_13", "r_14",
+    "r_15",
+];
 
 /// Output of the lexer.
 #[derive(Debug, Default)]
@@ -131,6 +138,7 @@ impl<'s> Reader<'s> {
             Tok::Text => self.text(token.place),
             Tok::Doc(text) => self.lexed.docs.push((self.lexed.tokens.len(), text)),
             Tok::Command => self.report(lexical::command(self.source, token.place)),
+            Tok::TypesetRange => self.range(token.place),
             Tok::Comment => self.report(lexical::comment(self.source, token.place)),
             Tok::LBracket if self.begins_group() => {
                 self.dots = Some(Dots::default());
@@ -235,6 +243,14 @@ impl<'s> Reader<'s> {
         }
         self.report(lexical::number(self.source, number, tail, place));
         self.push(Tok::Number(number), place);
+    }
+
+    /// Reports a range with its number in braces, as in `r_{7}`, and reads it as `r_7`.
+    fn range(&mut self, place: TextRange) {
+        let digits = self.source.slice(place).trim_matches(|c: char| !c.is_ascii_digit());
+        let name = RANGES.into_iter().find(|range| range.strip_prefix("r_") == Some(digits)).unwrap_or("r");
+        self.report(lexical::range(self.source, place, digits));
+        self.push(Tok::Name(name), place);
     }
 
     /// Removes the braces of `\text{…}`, which do not separate a name from its parenthesis.

@@ -185,9 +185,19 @@ pub(super) fn command(source: FileText<'_>, place: TextRange) -> Diagnostic {
         "vee" | "lor" => "OR",
         "neg" | "lnot" => "NOT",
         "inf" | "infinity" => "inf",
+        "," | ";" | ":" | "!" | "quad" | "qquad" => {
+            return diagnostic.fix("a space needs no command: write one", source.span(place), " ");
+        }
         _ => return diagnostic.help(TYPESETTING),
     };
     diagnostic.fix("write {}", source.span(place), apart(source, place, word))
+}
+
+/// Reports the range of a sonar whose number is in braces.
+pub(super) fn range(source: FileText<'_>, place: TextRange, digits: &str) -> Diagnostic {
+    let message = format!("the sonar of `{}` has no braces", source.slice(place));
+    let diagnostic = Diagnostic::new(Code::E0101, message, source.span(place), "not part of MDLe");
+    diagnostic.fix("write {}", source.span(place), format!("r_{digits}"))
 }
 
 /// Reports a block comment that is never closed.

@@ -104,8 +104,11 @@ pub(super) enum Tok<'s> {
     /// A block comment that is not terminated; terminated comments are skipped.
     #[token("/*", comment)]
     Comment,
+    /// The range of a sonar with its number in braces, as in `r_{7}`. The parser receives a name.
+    #[regex(r"r_\{\s*[0-9]+\s*\}")]
+    TypesetRange,
     /// A typesetting command that is not part of MDLe. The parser never receives it.
-    #[regex(r"\\[A-Za-z]+", priority = 1)]
+    #[regex(r"\\([A-Za-z]+|[,;:!])", priority = 1)]
     Command,
 }
 

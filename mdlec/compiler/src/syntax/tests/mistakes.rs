@@ -162,6 +162,7 @@ fn characters_and_numbers() {
             "{ A (Atom (b) (go 20 cm/s 0.36rad/s2)) (Atom (b) (rotate 90°)) (Atom (b) (rotate − 90)) }",
             "{ A B\n 3Patrol\n @ = C }",
             "{ A B \\alpha \\Gamma “x” @@@ }",
+            "{ A (Atom\\; (r_{7}(t) == r_{ 9 }(t))\\, align r_{7} r_{10}) }",
         ],
     );
 }
