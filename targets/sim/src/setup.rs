@@ -9,13 +9,16 @@ use std::time::Duration;
 use mdle_host::clap::ArgMatches;
 use mdle_host::{Batch, Watch, WholeFile};
 use mdle_runtime::{Meters, Pose, Radians};
-use mdle_simulator::{Form, Goal, Make, PARTS, Simulated, Start, StartError, StartNoise, Walls, World};
+use mdle_simulator::{Footprint, Form, Goal, Make, PARTS, Simulated, Start, StartError, StartNoise, Walls, World};
 
 use crate::observed::{Observed, Sounds};
 use crate::options;
 
 /// Number of seeds of a batch whose random starts are found before the first run.
 const STARTS_BEFORE: usize = 1000;
+
+/// Distance from obstacles, in metres, of a start pose that is proposed, if there is such a pose.
+const MARGIN: f64 = 0.2;
 
 /// A world, the robot to simulate in it, and the robot's start pose.
 struct Setup {
@@ -134,7 +137,10 @@ fn hint(world: &World, form: Form, walls: &Walls) -> String {
     if fits(&world.start) {
         return format!("the world's own start is {}", option(world.start));
     }
-    match around(&world.start).find(fits) {
+    // A place with some room is better than the nearest one, from which the robot can hardly turn.
+    let is_clear = |pose: &Pose| walls.gap(&Footprint { pose: *pose, form }, MARGIN) >= MARGIN;
+    let clear = around(&world.start).find(|pose| is_clear(pose) && fits(pose));
+    match clear.or_else(|| around(&world.start).find(fits)) {
         Some(pose) => format!("there is room at {}", option(pose)),
         None => "no place with room was found within 2 m of the world's own start".to_owned(),
     }

@@ -88,12 +88,12 @@ fn no_hint_names_a_start_without_room() {
     let given = refused(&["--body", "atrv", "--world", &wide, "--start", "0,0.1,0"]);
     let sentences = [&starts[..], &[given]].concat().join("\n").replace(&format!("{}/", folder.display()), "");
     insta::assert_snapshot!(sentences, @r#"
-    wide.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,0`
+    wide.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.55,0`
     across.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,180`
     narrow.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; no place with room was found within 2 m of the world's own start
-    --start 0,0.1,0: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,0`
+    --start 0,0.1,0: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.55,0`
     "#);
-    for (world, start) in [(&wide, "0,0.35,0"), (&across, "0,0.35,180")] {
+    for (world, start) in [(&wide, "0,0.55,0"), (&across, "0,0.35,180")] {
         let options = matches(&["--body", "atrv", "--world", world, "--start", start]);
         assert!(Sim::connect(&options, Sim::PERIOD, &StopRequest::default()).is_ok());
     }
