@@ -101,6 +101,17 @@ fn no_hint_names_a_start_without_room() {
 }
 
 #[test]
+fn a_start_outside_the_walls_around_the_goal_is_refused_with_its_place() {
+    let path = folder("outside").join("outside.toml");
+    let room = "[[wall]]\nname = \"room\"\npoints = [[0, 0], [3, 0], [3, 3], [0, 3], [0, 0]]";
+    let text = format!("start = {{ x = -1, y = 1 }}\ngoal = {{ min = [1, 1], max = [2, 2] }}\n{room}");
+    fs::write(&path, text).expect("a file of our own");
+    let sentence = refused(&["--world", path.to_str().expect("UTF-8")]);
+    let sentence = sentence.rsplit_once('/').expect("a path").1;
+    insta::assert_snapshot!(sentence, @r#"outside.toml:1:9: the robot would stand outside "room", and the goal or the charger is inside; there is room at `--start 0.5,1,0`"#);
+}
+
+#[test]
 fn bad_worlds_are_refused() {
     let folder = folder("worlds");
     let world = |name: &str, bytes: &[u8]| {

@@ -33,6 +33,8 @@ pub enum StartError {
     Inside(String),
     /// The pose is outside the walls that enclose the world's own start pose.
     OffTheFloor,
+    /// The pose is outside the closed wall with this name, inside which the goal or the charger is.
+    Outside(String),
 }
 
 impl fmt::Display for StartError {
@@ -45,6 +47,9 @@ impl fmt::Display for StartError {
             Self::Overlaps(form, name) => write!(f, "the robot, {form}, would stand in {name:?}"),
             Self::Inside(name) => write!(f, "the robot would stand inside {name:?}"),
             Self::OffTheFloor => write!(f, "that is off the floor"),
+            Self::Outside(name) => {
+                write!(f, "the robot would stand outside {name:?}, and the goal or the charger is inside")
+            }
         }
     }
 }
@@ -84,7 +89,10 @@ pub fn check(pose: &Pose, form: Form, world: &World, walls: &Walls) -> Result<()
     if !encloses(walls, place) && encloses(walls, start) && world.solid(start).is_none() {
         return Err(StartError::OffTheFloor);
     }
-    Ok(())
+    match world.shut_out(place) {
+        Some(outline) => Err(StartError::Outside(outline.name.clone())),
+        None => Ok(()),
+    }
 }
 
 /// Returns `true` if there is a wall in every direction from `place`.
@@ -153,6 +161,23 @@ mod tests {
         let (beside, walls) = (Pose { x: Meters(-1.0), ..Pose::ORIGIN }, Walls::of(&world));
         assert_eq!(check(&Pose::ORIGIN, Form::SCOUT, &world, &walls), Err(StartError::Inside("disc 1".into())));
         assert_eq!(check(&beside, Form::SCOUT, &world, &walls), Ok(()));
+    }
+
+    /// A robot outside a closed wall cannot reach a place inside. Without a goal or a charger, both sides may be meant.
+    #[test]
+    fn a_closed_wall_around_the_goal_has_an_outside() {
+        let room =
+            "start = { x = 9 }\n[[wall]]\nname = \"room\"\npoints = [[-2, -2], [4, -2], [4, 2], [-2, 2], [-2, -2]]";
+        let (goal, charger) = ("goal = { min = [3, -1], max = [3.5, 1] }", "charger = { at = [3, 0], heading = 0 }");
+        let at = |keys: &str, x: f64| {
+            let world = World::parse("a room", &format!("{keys}\n{room}")).expect("a good world");
+            check(&Pose { x: Meters(x), ..Pose::ORIGIN }, Form::SCOUT, &world, &Walls::of(&world))
+        };
+        for keys in [goal, charger] {
+            assert_eq!([at(keys, 9.0), at(keys, 0.0)], [Err(StartError::Outside("room".into())), Ok(())]);
+        }
+        assert_eq!(at("", 9.0), Ok(()));
+        assert_eq!(at("goal = { min = [3, -1], max = [6, 1] }", 9.0), Ok(()));
     }
 
     #[test]

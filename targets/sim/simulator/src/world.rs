@@ -4,7 +4,7 @@ use mdle_runtime::Pose;
 use mdle_sound::SoundSource;
 
 use crate::charger::Charger;
-use crate::goal::Goal;
+use crate::goal::{Goal, Zone};
 use crate::moving::Thing;
 use crate::outline::Outline;
 use crate::point::Point;
@@ -65,6 +65,22 @@ impl World {
         }
         let outlines = self.outlines.iter().chain(self.things.iter().map(|thing| &thing.outline));
         outlines.into_iter().find(|outline| outline.solid && outline.surrounds(place))
+    }
+
+    /// Returns the closed wall that contains the whole goal or the charger but not the position `place`, from which
+    /// neither can be reached; `None` if there is no such wall.
+    pub(crate) fn shut_out(&self, place: Point) -> Option<&Outline> {
+        let goal = self.goal.map(|goal| match goal.zone {
+            Zone::Rectangle { min, max } => [min, max],
+            Zone::Circle { center, radius } => [-radius, radius].map(|far| Point { x: center.x + far, ..center }),
+        });
+        let charger = self.charger.map(|charger| [Point::of(&charger.pose); 2]);
+        let walls = self.outlines.iter().skip(self.contours).filter(|outline| !outline.solid);
+        let mut closed = walls.filter(|wall| wall.points.len() > 3 && wall.points.first() == wall.points.last());
+        closed.find(|wall| {
+            let mut wanted = [goal, charger].into_iter().flatten();
+            !wall.surrounds(place) && wanted.any(|places| places.iter().all(|at| wall.surrounds(*at)))
+        })
     }
 
     /// Returns the name of the wall, box or disc that prevents robots of this radius, in metres, from reaching a
