@@ -186,6 +186,23 @@ mod tests {
         assert!(fires("0000", &y));
     }
 
+    /// Returns the verdicts on the direction ahead after the three `pings` of the front sonar, oldest first.
+    fn ahead(pings: [f64; 3]) -> (bool, bool) {
+        let mut y = in_turn([9.0; 16]);
+        pings.into_iter().for_each(|range| y.ping(SonarId::new(0), Some(range)));
+        (fires("0000", &y), fires("1000", &y))
+    }
+
+    #[test]
+    fn a_near_echo_ahead_is_believed_when_the_next_one_agrees() {
+        const UNDECIDED: (bool, bool) = (false, false);
+        assert_eq!([ahead([3.7, 3.66, 0.37]), ahead([3.7, 0.37, 3.62])], [UNDECIDED; 2]);
+        assert_eq!([ahead([3.7, 0.37, 0.35]), ahead([0.37, 3.66, 3.62])], [BLOCKED, FREE]);
+        assert_eq!(ahead([1.3, 1.2, 1.1]), BLOCKED, "a wall that comes nearer");
+        let left = left([Some(3.7), Some(3.66), Some(0.57)], [[None; 2]; 2]);
+        assert_eq!(left, BLOCKED, "a wall that begins beside the robot");
+    }
+
     #[test]
     fn what_was_passed_since_another_sonar_heard_it_is_not_there_any_more() {
         let mut y = in_turn([9.0; 16]);

@@ -7,12 +7,18 @@ use mdle_runtime::{Meters, Nanos, Ping, Radians, SONARS, SonarId};
 /// The sonars front, left, back and right, in the order in which the bits are written.
 pub(crate) const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
 
+/// The sonar in whose direction the robot drives.
+const AHEAD: SonarId = SonarId::new(0);
+
 /// Maximum angle between a direction and the axis of a ping that is used for it. It is a little more than half the
 /// angle between two sonars, so that a slowly turning robot always has a sonar in each direction.
 const WITHIN: Radians = Radians::from_degrees(14.0);
 /// Difference, in metres, below which two ranges of one sonar are treated as echoes of the same object, and not as
 /// random errors.
 const SAME: f64 = 0.1;
+
+/// Minimum distance, in metres, between a stray echo and the echoes before and after it.
+const STRAY: f64 = 1.0;
 
 /// Time between two pings of different sonars below which both belong to one ring. A Scout's ring takes 0.96 s, and
 /// adjacent sonars follow each other after 0.06 s.
@@ -33,7 +39,8 @@ const SLANT: (f64, f64) = (1.08, 0.02);
 /// echo. These are two pings, or three if the two were [one look](is_one_look).
 ///
 /// `None` if there were too few pings in that direction: a single ping with a near echo is enough, but a single ping
-/// without a near echo does not make the direction free.
+/// without a near echo does not make the direction free. Also `None` while a near echo from ahead may be
+/// [stray](is_stray).
 pub(crate) fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
     let newest: [_; 3] = newest(y, direction, |sonar, ping| !is_of_side(y, direction, sonar, ping));
     let [first, second, _] = newest;
@@ -41,9 +48,17 @@ pub(crate) fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters>
     let confirming = if is_one_look { newest } else { [first, second, second] };
     let nearest = nearest(confirming);
     match nearest.filter(|range| *range < y.blocked_within()) {
-        Some(near) => Some(near),
+        Some(near) => (direction != AHEAD || !is_stray(newest, near)).then_some(near),
         None => confirming[2].map(|_| overheard(y, direction).or(nearest).unwrap_or(Meters(f64::INFINITY))),
     }
+}
+
+/// Returns `true` if the range `near` may be a random error, since the other two of these pings received echoes from
+/// much further away. Before a driving robot, walls come nearer by a few centimetres from ping to ping; beside it,
+/// they begin suddenly.
+fn is_stray(pings: [Option<(SonarId, &Ping)>; 3], near: Meters) -> bool {
+    let far = |ping: &(SonarId, &Ping)| ping.1.range.is_some_and(|range| range.0 > near.0 + STRAY);
+    pings.iter().flatten().filter(|ping| far(ping)).count() == 2
 }
 
 /// Returns `true` if two pings in a direction are one look: a robot that turns fast has passed the direction with two

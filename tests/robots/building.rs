@@ -1,8 +1,8 @@
 //! Tests two plans, written as a reader of the book would, in a building that was drawn after the control laws had been
 //! written. Neither plan was changed after its first run.
 //!
-//! `MDLE_FIRST=7810000 MDLE_LONG=15` tries 300 seeds. With them, the ideal body arrives in all runs, a Scout in 300 by
-//! measures and in 297 by landmarks, and an ATRV-mini in 293 and 284 runs.
+//! `MDLE_FIRST=7830000 MDLE_LONG=15` tries 300 seeds. With them, the ideal body and a Scout arrive in all runs, and an
+//! ATRV-mini in 288 runs by measures and in 299 by landmarks.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, reason = "a test tells what happened")]
 
 use std::time::Duration;
@@ -73,5 +73,5 @@ fn a_plan_by_measures_arrives_in_a_new_building() {
 fn a_plan_by_landmarks_arrives_in_a_new_building() {
     assert_arrive(BY_LANDMARKS, Body::Ideal, 20, 95);
     assert_arrive(BY_LANDMARKS, Body::Scout, 20, 95);
-    assert_arrive(BY_LANDMARKS, Body::Atrv, 20, 90);
+    assert_arrive(BY_LANDMARKS, Body::Atrv, 20, 95);
 }
