@@ -7,6 +7,7 @@ use core::f64::consts::TAU;
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
+use crate::gains::Gains;
 use crate::map::Map;
 use crate::too_near::TooNear;
 use crate::winding::Winding;
@@ -36,9 +37,6 @@ const ROUNDED: f64 = 0.03;
 const ROOM: f64 = 0.12;
 /// Distance, in metres, below which an obstacle costs five times as much.
 const CLOSE: f64 = 0.08;
-/// Cost, in metres, per metre by which an obstacle that is too near to be measured is nearer than `CLOSE`. On the map,
-/// a jamb may be 5 cm further away than it is.
-const TOO_NEAR_COSTS: f64 = 3.0;
 /// Cost, in metres, of turning on the spot or driving backwards. Such a movement must bring the robot nearer to the
 /// place by more than this.
 const STANDING_COSTS: f64 = 0.06;
@@ -66,6 +64,8 @@ pub(crate) struct Surroundings {
     points: [(f64, f64); POINTS],
     count: usize,
     too_near: TooNear,
+    /// Cost, in metres, per metre by which an obstacle of `too_near` is nearer than `CLOSE`.
+    too_near_costs: f64,
     /// Half-length of the rectangle that, extended by `radius` on all sides, is the body's outline; 0 for a disc.
     half_length: f64,
     /// Half-width of the rectangle that, extended by `radius` on all sides, is the body's outline; 0 for a disc.
@@ -82,6 +82,7 @@ impl Surroundings {
             points: [(0.0, 0.0); POINTS],
             count: 0,
             too_near: TooNear::of(y, here),
+            too_near_costs: Gains::of(y).too_near_costs,
             half_length: half_length - radius,
             half_width: half_width - radius,
             radius,
@@ -177,7 +178,7 @@ impl Surroundings {
         let Radians(off) = Radians(libm::atan2(dy, dx) - theta).wrapped();
         let off = if back.is_some_and(|back| back * off < 0.0) { TAU - off.abs() } else { off.abs() };
         let stands = if v <= 0.0 { STANDING_COSTS } else { 0.0 };
-        let too_near = TOO_NEAR_COSTS * (CLOSE - self.room(self.too_near.places(), end)).max(0.0);
+        let too_near = self.too_near_costs * (CLOSE - self.room(self.too_near.places(), end)).max(0.0);
         let tight =
             too_near + if kept < 0.0 { 0.0 } else { 1.0 } * (ROOM - least).max(0.0) + 4.0 * (CLOSE - least).max(0.0);
         Some(libm::hypot(dx, dy) + if aim.is_straight { OFF_COSTS_STRAIGHT } else { OFF_COSTS } * off + tight + stands)
@@ -278,6 +279,16 @@ mod tests {
         };
         assert_eq!(twist(Some(0.2)), Some(Twist { v: SPEED, omega: RadiansPerSecond(0.0) }));
         assert!(twist(Some(0.15)).is_some_and(|twist| twist.v.0 <= SPEED.0 / 2.0));
+    }
+
+    /// With the costs of a Scout, it would turn while driving ahead, past an obstacle at 45° to the right.
+    #[test]
+    fn a_rectangle_turns_backwards_beside_an_obstacle_too_near_to_be_measured() {
+        let mut atrv = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+        atrv.ping_at(SonarId::new(14), Some(0.11), atrv.now);
+        let aim = Aim { ahead: 0.1, ..aim(0.3) };
+        let twist = Surroundings::of(&atrv, &Map::EMPTY, Pose::ORIGIN).towards(&aim, SPEED, false);
+        assert!(twist.is_some_and(|twist| twist.v.0 < 0.0 && twist.omega.0 > 0.0), "{twist:?}");
     }
 
     #[test]
