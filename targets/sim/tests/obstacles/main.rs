@@ -37,7 +37,7 @@ fn assert_clean_of(runs: u64, name: &str, crossing: fn(Body, u64) -> Crossing, b
             Outcome::TimedOut => {}
         }
     }
-    println!("{name}, {body}: {clean} of {count} arrive without contact, {touched} with");
+    println!("{name}, {body}: {clean} of {count} arrive without contact, {touched} touch something");
     assert!(100 * clean >= share * count, "{name}, {body}: {clean} of {count}");
 }
 

@@ -22,9 +22,9 @@ const TURNS: u64 = 3000;
 pub(crate) enum Outcome {
     /// The run arrived without contact.
     Clean,
-    /// The run arrived, with this many contacts.
+    /// The robot touched something this many times, whether it arrived or not.
     Touched(u32),
-    /// The run did not arrive within five minutes.
+    /// The robot touched nothing, but did not arrive within five minutes.
     TimedOut,
 }
 
@@ -86,5 +86,5 @@ pub(crate) fn drive(make: &Make, world: &World, to: Point) -> Outcome {
         }
         input = law.input(&y, t);
     }
-    Outcome::TimedOut
+    if contacts == 0 { Outcome::TimedOut } else { Outcome::Touched(contacts) }
 }
