@@ -12,7 +12,7 @@ const PROGRESS: f64 = 0.1;
 /// Distance of a goal, in metres, below which `goAvoid` may complete before it has made this progress.
 const FAR: f64 = 1.0;
 
-/// Warns about every `stuck` that never fires, or that fires whatever the robot does.
+/// Warns about every `stuck` that never fires, or that fires before the robot can have made progress.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut lint = Goals { plan, found };
     let fastest = lint.sequence(&plan.root.body);
@@ -55,11 +55,12 @@ impl Goals<'_, '_> {
             let help = "`stuck` asks for the progress of a `goAvoid` to a point; a time ends every law: `wait 30s`";
             self.found.push(lint(format!("`{text}` is never true"), here).help(help));
         } else if quark.args.first().and_then(si).is_some_and(|time| time < needed) {
-            let message = format!("`{text}` is true after its time, whatever the robot does");
+            let message = format!("`{text}` is true before the robot can have made progress");
             // Upwards, so that the time that is shown is enough.
-            let needed = (needed * 1e3).ceil();
-            let here = format!("10 cm of progress take {needed} ms or more");
-            let help = "give it a time in which there is progress, such as `stuck 30s`";
+            let seconds = (needed * 1e3).ceil() / 1e3;
+            let here = format!("at its speed, 10 cm of progress take {seconds} s or more");
+            let enough = (10.0 * needed).ceil().max(30.0);
+            let help = format!("give it a time in which there is progress, such as `stuck {enough}s`");
             self.found.push(lint(message, &here).help(help));
         }
     }

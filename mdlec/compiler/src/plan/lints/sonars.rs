@@ -1,4 +1,4 @@
-//! Warns about an `align` of two sonars whose ranges no turn makes equal (W0210).
+//! Warns about an `align` of two sonars whose ranges do not tell the direction of a wall (W0210).
 
 use mdle_runtime::SONARS;
 
@@ -28,9 +28,7 @@ fn warning(plan: &Plan, atom: &Atom) -> Option<Diagnostic> {
     let message = match apart {
         _ if law.name != "align" => return None,
         0 => format!("`{text}` compares a sonar with itself, so it is done at once"),
-        _ if apart * 2 == SONARS => {
-            format!("no turn makes the ranges of `{text}` equal: the sonars look in opposite directions")
-        }
+        _ if apart * 2 == SONARS => format!("`{text}` compares two walls: the sonars look in opposite directions"),
         _ => return None,
     };
     let lint = Diagnostic::new(Code::W0210, message, atom.span, "write two sonars that look at the same wall");
