@@ -85,6 +85,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
     ("a variable", "{ Dock (bumper)\n  x = 5\n  (Atom (wait 5) (go 20 0))\n}\n", "no variables"),
     ("square brackets", "{ Dock (bumper)\n  (Atom [bumper] (go 20 0))\n}\n", "`(bumper)`"),
     ("a decimal comma", "{ Dock (bumper)\n  (Atom (wait 0,5) (go 20 0))\n}\n", "`0.5`"),
+    ("a comma between arguments", "{ Dock (bumper)\n  (Atom (wait 5) align 3,5)\n}\n", "`align 3 5`"),
     ("a sum of signals", "{ Dock (bumper)\n  (Atom (r0 + r1 < 1) (go 20 0))\n}\n", "one signal on each side"),
     ("a product of numbers", "{ Dock (bumper)\n  (Atom (wait 2*5) (go 20 0))\n}\n", "write the result: `10`"),
     ("a name for a range", "{ Dock (bumper)\n  (Atom (null) (goAvoid 0 far))\n}\n", "expected a length"),

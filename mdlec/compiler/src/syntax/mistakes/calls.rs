@@ -60,7 +60,14 @@ pub(super) fn decimal_comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let diagnostic = site.about(comma, format!("`{left},{right}` is not a number"), "not part of a number");
-    Some(diagnostic.fix("a decimal number has a dot: {}", site.span(whole, comma + 1), format!("{left}.{right}")))
+    let diagnostic =
+        diagnostic.fix("a decimal number has a dot: {}", site.span(whole, comma + 1), format!("{left}.{right}"));
+    // These have a single argument, a time.
+    let name = whole.checked_sub(1).and_then(|at| site.name_at(at)).filter(|name| !["wait", "stuck"].contains(name));
+    Some(match name {
+        Some(name) => diagnostic.help(format!("or arguments have a space between them: `{name} {left} {right}`")),
+        None => diagnostic,
+    })
 }
 
 /// Reports arguments that are separated from the name of their plan, as in `Leg (3m)`.
