@@ -2,7 +2,9 @@
 //! faster than the robot drives.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
-use mdle_runtime::{Meters, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
+use mdle_runtime::{Meters, Ping, Pose, Radians, SonarId};
+
+use crate::missed::{Heard, beside};
 
 /// Minimum and maximum speed, in m/s, of a person who crosses the way. A slower object is treated as fixed, and faster
 /// echoes belong to different objects.
@@ -15,6 +17,11 @@ const TURNS: f64 = 0.02;
 /// Maximum angle, in radians, by which the robot may turn between compared echoes, at any rate. A turn by this angle
 /// hardly moves an echo, and skidding wheels turn the robot to and fro by this much.
 const TURNED: f64 = 0.01;
+/// Maximum turn rate of the robot, in rad/s, between echoes that are compared more strictly: a robot that gets back to
+/// its way after a random range turns by some degrees between its pings.
+const TURNS_MOST: f64 = 0.2;
+/// Minimum speed, in m/s, of a person between such echoes, and maximum ratio of the two speeds.
+const IN_TURNS: (f64, f64) = (0.35, 1.5);
 /// Minimum decrease, in metres, of the distance of a crossing person from the first compared echo to the last. A
 /// smaller decrease may be an error of the ranges.
 const NEARER: f64 = 0.075;
@@ -57,33 +64,38 @@ pub(crate) struct Crossing {
 /// Returns the person who comes from a side and may meet the robot if it drives on at `speed`, in m/s; `None` if no
 /// such person comes. If there are several such persons, the result has the longest of their times and the longest of
 /// their distances.
-pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> Option<Crossing> {
+pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, heard: &Heard, here: Pose, speed: f64) -> Option<Crossing> {
     let ahead = libm::sincos(here.theta.0);
-    let all = (0..SONARS as u8).map(SonarId::new).filter_map(|sonar| comes(y, sonar, (here, ahead), speed));
+    let all = beside().filter_map(|sonar| comes(y, sonar, heard.newest(y, sonar)?, (here, ahead), speed));
     all.reduce(|one, other| Crossing { passed: one.passed.max(other.passed), back: one.back.max(other.back) })
 }
 
-/// Returns the person whose echoes are in all kept pings of `sonar`; `None` if there is no such person. The conditions
-/// are those of [`crosses`]. `sin` and `cos` are the sine and the cosine of the heading of `here`.
+/// Returns the minimum speed, in m/s, of a person with these three echoes, newest first, and the maximum ratio of the
+/// two speeds between them; `None` if the robot has turned too fast to compare the echoes.
+fn limits([new, middle, old]: [(&Ping, Meters); 3]) -> Option<(f64, f64)> {
+    let turned = |(from, _): (&Ping, Meters), (to, _): (&Ping, Meters)| {
+        let Radians(turned) = Radians(to.pose.theta.0 - from.pose.theta.0).wrapped();
+        (turned.abs(), to.at.seconds() - from.at.seconds())
+    };
+    let turns = [turned(old, middle), turned(middle, new)];
+    if turns.iter().all(|(turned, seconds)| *turned <= (TURNS * seconds).max(TURNED)) {
+        return Some((SPEEDS[0], STEADY));
+    }
+    turns.iter().all(|(turned, seconds)| *turned <= TURNS_MOST * seconds).then_some(IN_TURNS)
+}
+
+/// Returns the person whose three newest echoes, newest first, `sonar` has received; `None` if they are not from such a
+/// person. The conditions are those of [`crosses`]. `sin` and `cos` are the sine and the cosine of the heading of
+/// `here`.
 fn comes<Y: DiffDrive + SonarRing>(
     y: &Y,
     sonar: SonarId,
+    echoes: [(&Ping, Meters); 3],
     (here, (sin, cos)): (Pose, (f64, f64)),
     speed: f64,
 ) -> Option<Crossing> {
-    const { assert!(PINGS_KEPT == 3) };
-    if sonar.bearing().wrapped().0.abs() > core::f64::consts::FRAC_PI_2 {
-        return None;
-    }
-    let mut pings = y.pings(sonar).newest_first().map(|ping| Some((ping, ping.range?)));
-    let [new, middle, old] = [pings.next()??, pings.next()??, pings.next()??];
-    let is_straight = |(from, _): (&Ping, Meters), (to, _): (&Ping, Meters)| {
-        let turned = Radians(to.pose.theta.0 - from.pose.theta.0).wrapped().0.abs();
-        turned <= (TURNS * (to.at.seconds() - from.at.seconds())).max(TURNED)
-    };
-    if !(is_straight(old, middle) && is_straight(middle, new)) {
-        return None;
-    }
+    let (slowest, steady) = limits(echoes)?;
+    let [new, middle, old] = echoes;
     let echo = |(ping, range): (&Ping, Meters)| {
         let axis = ping.axis(sonar);
         let place = axis.towards(axis.theta, Meters(y.ring_radius().0 + range.0));
@@ -116,7 +128,7 @@ fn comes<Y: DiffDrive + SonarRing>(
     let is_nearer = mean * (new.at - old.at) >= NEARER;
     let back = if is_far && seconds < BACK { (apart + CLEAR - new.along).max(0.0) } else { 0.0 };
     let crossing = Crossing { passed: seconds + apart / mean, back };
-    let is_steady = first.max(second) <= STEADY * first.min(second);
+    let is_steady = first.min(second) >= slowest && first.max(second) <= steady * first.min(second);
     (moves(first) && is_steady && is_nearer && meets).then_some(crossing)
 }
 
@@ -134,11 +146,19 @@ mod tests {
 
     /// Returns the person whose echoes this sonar of a robot at rest receives at these ranges, one second apart.
     fn person(sonar: u8, ranges: [f64; 3]) -> Option<Crossing> {
-        let mut y = Sensed::default();
-        for (second, range) in (0..).zip(ranges) {
-            y.ping_at(SonarId::new(sonar), Some(range), Nanos(second * 1_000_000_000));
+        turning(sonar, &ranges.map(|range| (Some(range), 0.0)))
+    }
+
+    /// Returns the person whose echoes this sonar receives at these ranges, one second apart, at these headings of the
+    /// robot.
+    fn turning(sonar: u8, pings: &[(Option<f64>, f64)]) -> Option<Crossing> {
+        let (mut y, mut heard) = (Sensed::default(), Heard::default());
+        for (second, (range, heading)) in (0..).zip(pings) {
+            y.pose.theta = Radians(*heading);
+            y.ping_at(SonarId::new(sonar), *range, Nanos(second * 1_000_000_000));
+            heard.take(&y);
         }
-        crosses(&y, y.pose, 0.2)
+        crosses(&y, &heard, y.pose, 0.2)
     }
 
     /// Returns `true` if a robot at rest waits for the person whose echoes have these ranges.
@@ -168,15 +188,34 @@ mod tests {
         assert!(waits([4.7, 4.2, 3.7]));
     }
 
+    #[test]
+    fn a_person_whom_one_ping_misses_is_waited_for() {
+        let comes = |ranges: [Option<f64>; 4]| turning(3, &ranges.map(|range| (range, 0.0))).is_some();
+        assert!(comes([Some(2.8), None, Some(1.8), Some(1.3)]));
+        assert!(!comes([Some(2.8), None, None, Some(1.3)]), "two of three are missed");
+        assert!(!comes([Some(1.8), None, Some(1.8), Some(1.8)]), "a wall");
+        assert!(!comes([None, None, Some(1.8), Some(1.3)]), "too few echoes");
+    }
+
+    /// A robot that a random range ahead has turned by 9 degrees turns back while the person comes.
+    #[test]
+    fn a_robot_that_turns_back_to_its_way_waits_for_a_steady_person() {
+        let comes = |old, turn| turning(3, &[(Some(old), turn), (Some(2.3), 0.0), (Some(1.8), 0.0)]).is_some();
+        assert!(comes(2.8, 0.16));
+        assert!(!comes(2.8, 0.21), "a faster turn");
+        assert!(comes(3.2, 0.0) && !comes(3.2, 0.16), "the echo of a rough wall");
+        assert!(!comes(2.6, 0.16), "as slow as the echo of a rough wall");
+    }
+
     /// Returns `true` if a robot waits while it turns to and fro by `angle` radians between pings that are 180 ms
-    /// apart.
+    /// apart, and of which the second pair shows almost twice the speed of the first.
     fn waits_while_it_turns(angle: f64) -> bool {
         let mut y = Sensed { confirmation: 2, ..Sensed::default() };
-        for (number, (range, turned)) in (0..).zip([(2.0, 0.0), (1.9, angle), (1.8, 0.0)]) {
+        for (number, (range, turned)) in (0..).zip([(2.0, 0.0), (1.9, angle), (1.72, 0.0)]) {
             y.pose.theta = Radians(turned);
             y.ping_at(SonarId::new(3), Some(range), Nanos(number * 180_000_000));
         }
-        crosses(&y, y.pose, 0.2).is_some()
+        crosses(&y, &Heard::default(), y.pose, 0.2).is_some()
     }
 
     #[test]

@@ -28,6 +28,7 @@ mod heading;
 mod lead;
 mod map;
 mod memory;
+mod missed;
 mod modules;
 mod narrow;
 mod passers;
