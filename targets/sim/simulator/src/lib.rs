@@ -31,6 +31,7 @@ mod start;
 mod start_noise;
 mod surfaces;
 mod trail;
+mod wall_ends;
 mod walls;
 mod world;
 mod world_error;

@@ -10,6 +10,7 @@ use crate::moving::Moving;
 use crate::outline::Outline;
 use crate::point::Point;
 use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
+use crate::wall_ends::WallEnds;
 use crate::world::World;
 
 /// Maximum number of pairs of a segment's end and another segment in the same cell. Checking this number of pairs takes
@@ -39,6 +40,7 @@ struct Standing {
     /// Roughness of each segment, from 0 to 1.
     roughs: Vec<f64>,
     grid: Grid,
+    free_ends: WallEnds,
 }
 
 /// The other robots near a robot.
@@ -94,10 +96,11 @@ impl Walls {
             }
             meeting.ends()
         };
-        let ends = segments.iter().map(meets).collect();
+        let ends: Vec<Ends> = segments.iter().map(meets).collect();
+        let free_ends = WallEnds::of(&segments, &ends);
         let roughs = world.segments().map(|(outline, ..)| outline.rough).collect();
         let moving = world.things.iter().map(Moving::of).collect();
-        let standing = Arc::new(Standing { segments, ends, roughs, grid });
+        let standing = Arc::new(Standing { segments, ends, roughs, grid, free_ends });
         Self { standing, moving, others: Others::default(), rough: world.rough }
     }
 
@@ -144,7 +147,7 @@ impl Walls {
         let other = nearest_of(reached.others, from, way, most);
         // Only obstacles nearer than the nearest robot are searched.
         let reach = other.map_or(most, |(range, _)| range);
-        let Standing { segments, ends, roughs, grid } = &*self.standing;
+        let Standing { segments, ends, roughs, grid, .. } = &*self.standing;
         let hit = reached.standing.then(|| grid.ray(from, way, reach)).flatten();
         let standing = hit.and_then(|Hit { range, segment }| {
             let (side, ends) = (segments.get(segment)?, ends.get(segment)?);
@@ -237,6 +240,11 @@ impl Walls {
     /// Returns the centre of each moving object, except open doors.
     pub(crate) fn things(&self) -> impl Iterator<Item = Point> {
         self.moving.iter().filter_map(Moving::around)
+    }
+
+    /// Returns the free ends of the fixed walls.
+    pub(crate) fn free_ends(&self) -> &WallEnds {
+        &self.standing.free_ends
     }
 
     /// Returns the other robots that rays from `from` may hit at angles of at most `half_cone` from `axis`.

@@ -8,6 +8,9 @@
 //!
 //! The rays of a cone are so far apart that a person 4 m away may be between two rays. Therefore one additional ray is
 //! aimed at each moving object and each other robot, of which there are few.
+//!
+//! Walls have no thickness, so rays that go along a wall do not meet its end. The echo that its edge scatters is
+//! therefore computed separately.
 
 use mdle_runtime::Radians;
 
@@ -27,6 +30,10 @@ const EDGE_COSTS: f64 = 0.65;
 const GAIN_LASTS: f64 = 2.0;
 /// Loss per metre beyond [`GAIN_LASTS`]: at 6.5 m, a wall is detected up to 26° off its normal.
 const METRE_COSTS: f64 = 0.13;
+/// Minimum cosine of the angle between a wall and a ray to its end at which other rays may miss the end: 30°.
+const ALONG: f64 = 0.866;
+/// Distance before the end of a wall, in metres, up to which the way to the end must be free.
+const BEFORE: f64 = 1e-3;
 /// Maximum distance between the two reflections of a ray in a corner, per metre of range, at which the sound still
 /// returns to the sonar.
 const CORNER: f64 = 0.35;
@@ -65,6 +72,38 @@ pub(crate) fn echo(walls: &Walls, from: Point, axis: Radians, hearing: &Hearing,
         // The echo of a corner comes from further away than the point where the ray first hit a wall.
         best = heard.filter(|range| *range < most).or(best);
     }
+    let scatters = hearing.facing.is_some() && standing;
+    let end = scatters.then(|| end_on((walls, reached), (from, axis), hearing, fade, best.unwrap_or(hearing.most)));
+    end.flatten().or(best)
+}
+
+/// Returns the distance of the nearest free end of a wall that lies along the ray to this end; `None` if the sonar
+/// receives no echo of such an end from within `most` metres.
+fn end_on(
+    (walls, reached): (&Walls, Reached<'_>),
+    (from, axis): (Point, Radians),
+    hearing: &Hearing,
+    fade: f64,
+    most: f64,
+) -> Option<f64> {
+    let reach = most.min(GAIN_LASTS + (1.0 + fade - EDGE_COSTS) / METRE_COSTS);
+    let (sin, cos) = libm::sincos(axis.0);
+    let mut best = None;
+    walls.free_ends().near(from, reach, |end, along| {
+        let (x, y) = (end.x - from.x, end.y - from.y);
+        let range = libm::hypot(x, y);
+        if range <= BEFORE || range >= best.unwrap_or(reach) || x * along.x + y * along.y < ALONG * range {
+            return;
+        }
+        let off_axis = libm::atan2(y * cos - x * sin, x * cos + y * sin);
+        let lost = hearing.lobe.map_or(0.0, |lobe| (off_axis / lobe.0) * (off_axis / lobe.0)) - fade;
+        let left = 1.0 - METRE_COSTS * (range - GAIN_LASTS).max(0.0) - lost;
+        let way = Point { x: x / range, y: y / range };
+        let is_heard = off_axis.abs() < hearing.half_cone.0 && left >= EDGE_COSTS;
+        if is_heard && walls.cast_among(reached, from, way, range - BEFORE).is_none() {
+            best = Some(range);
+        }
+    });
     best
 }
 

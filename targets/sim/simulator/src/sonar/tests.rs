@@ -167,6 +167,31 @@ fn a_wall_end_is_heard_only_near_the_axis() {
     assert_eq!(end(24.0), None);
 }
 
+/// Walls have no thickness, so the end of a wall along the axis is between all rays, or behind the one that goes along
+/// the wall.
+#[test]
+fn the_end_of_a_wall_is_heard_by_a_sonar_that_looks_along_the_wall() {
+    // The end of a wall at this distance, at this angle off the axis, that is turned by 8° against the ray to it.
+    let end = |distance: f64, degrees: f64, more: &str| {
+        let at = |far: f64, degrees: f64| {
+            let (sin, cos) = libm::sincos(degrees.to_radians());
+            [far * cos, far * sin]
+        };
+        let ([x, y], [along, across]) = (at(distance, degrees), at(3.0, degrees + 8.0));
+        let wall = [0.19 + x, y, 0.19 + x + along, y + across];
+        let text = format!("[[wall]]\npoints = [[{}, {}], [{}, {}]]\n{more}", wall[0], wall[1], wall[2], wall[3]);
+        range(&pinged(Body::Scout, &[], &text), 0)
+    };
+    for degrees in [-12.0, -3.0, 0.0, 3.0, 12.0] {
+        assert!(end(1.0, degrees, "").is_some_and(|range| (0.97..1.0).contains(&range)), "{degrees}");
+    }
+    assert_eq!(end(1.0, 14.0, ""), None, "off the axis");
+    assert!(end(4.6, 0.0, "").is_some());
+    assert_eq!(end(4.8, 0.0, ""), None, "too far away");
+    let before = "[[disc]]\nrough = 1\ncentre = [0.9, 0]\nradius = 0.1";
+    assert!(end(1.0, 0.0, before).is_some_and(|range| range < 0.65), "a disc hides the end");
+}
+
 #[test]
 fn a_corner_is_heard_where_its_walls_are_not() {
     // A right-angled corner whose walls both lie 45° off the axis.
