@@ -1,5 +1,5 @@
-//! Keeps the echo before a missed ping: of a person who comes from a side, a sonar that pings once a second receives few
-//! echoes, and misses some.
+//! Keeps the echo before a missed ping: of a person who comes from a side, a sonar that pings once a second receives
+//! few echoes, and misses some.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, PINGS_KEPT, Ping, SONARS, SonarId};
