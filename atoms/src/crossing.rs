@@ -4,7 +4,7 @@
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Ping, Pose, Radians, SonarId};
 
-use crate::missed::{Heard, beside};
+use crate::missed::{BeforeMissed, forward_sonars};
 
 /// Minimum and maximum speed, in m/s, of a person who crosses the way. A slower object is treated as fixed, and faster
 /// echoes belong to different objects.
@@ -64,9 +64,14 @@ pub(crate) struct Crossing {
 /// Returns the person who comes from a side and may meet the robot if it drives on at `speed`, in m/s; `None` if no
 /// such person comes. If there are several such persons, the result has the longest of their times and the longest of
 /// their distances.
-pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, heard: &Heard, here: Pose, speed: f64) -> Option<Crossing> {
+pub(crate) fn crosses<Y: DiffDrive + SonarRing>(
+    y: &Y,
+    before: &BeforeMissed,
+    here: Pose,
+    speed: f64,
+) -> Option<Crossing> {
     let ahead = libm::sincos(here.theta.0);
-    let all = beside().filter_map(|sonar| comes(y, sonar, heard.newest(y, sonar)?, (here, ahead), speed));
+    let all = forward_sonars().filter_map(|sonar| comes(y, sonar, before.newest(y, sonar)?, (here, ahead), speed));
     all.reduce(|one, other| Crossing { passed: one.passed.max(other.passed), back: one.back.max(other.back) })
 }
 
@@ -152,13 +157,13 @@ mod tests {
     /// Returns the person whose echoes this sonar receives at these ranges, one second apart, at these headings of the
     /// robot.
     fn turning(sonar: u8, pings: &[(Option<f64>, f64)]) -> Option<Crossing> {
-        let (mut y, mut heard) = (Sensed::default(), Heard::default());
+        let (mut y, mut before) = (Sensed::default(), BeforeMissed::default());
         for (second, (range, heading)) in (0..).zip(pings) {
             y.pose.theta = Radians(*heading);
             y.ping_at(SonarId::new(sonar), *range, Nanos(second * 1_000_000_000));
-            heard.take(&y);
+            before.take(&y);
         }
-        crosses(&y, &heard, y.pose, 0.2)
+        crosses(&y, &before, y.pose, 0.2)
     }
 
     /// Returns `true` if a robot at rest waits for the person whose echoes have these ranges.
@@ -195,16 +200,20 @@ mod tests {
         assert!(!comes([Some(2.8), None, None, Some(1.3)]), "two of three are missed");
         assert!(!comes([Some(1.8), None, Some(1.8), Some(1.8)]), "a wall");
         assert!(!comes([None, None, Some(1.8), Some(1.3)]), "too few echoes");
+        let twice = [Some(3.8), None, None, Some(2.3), Some(1.8)].map(|range| (range, 0.0));
+        assert_eq!(turning(3, &twice), None, "two pings in a row miss");
     }
 
     /// A robot that a random range ahead has turned by 9 degrees turns back while the person comes.
     #[test]
     fn a_robot_that_turns_back_to_its_way_waits_for_a_steady_person() {
-        let comes = |old, turn| turning(3, &[(Some(old), turn), (Some(2.3), 0.0), (Some(1.8), 0.0)]).is_some();
-        assert!(comes(2.8, 0.16));
-        assert!(!comes(2.8, 0.21), "a faster turn");
-        assert!(comes(3.2, 0.0) && !comes(3.2, 0.16), "the echo of a rough wall");
-        assert!(!comes(2.6, 0.16), "as slow as the echo of a rough wall");
+        let comes = |[old, middle]: [f64; 2], turn| {
+            turning(3, &[(Some(old), turn), (Some(middle), 0.0), (Some(1.8), 0.0)]).is_some()
+        };
+        assert!(comes([2.8, 2.3], 0.16));
+        assert!(!comes([2.8, 2.3], 0.21), "a faster turn");
+        assert!(comes([3.2, 2.3], 0.0) && !comes([3.2, 2.3], 0.16), "unsteady, as echoes of a rough wall");
+        assert!(comes([2.4, 2.1], 0.0) && !comes([2.4, 2.1], 0.16), "slow, as echoes of a rough wall");
     }
 
     /// Returns `true` if a robot waits while it turns to and fro by `angle` radians between pings that are 180 ms
@@ -215,7 +224,7 @@ mod tests {
             y.pose.theta = Radians(turned);
             y.ping_at(SonarId::new(3), Some(range), Nanos(number * 180_000_000));
         }
-        crosses(&y, &Heard::default(), y.pose, 0.2).is_some()
+        crosses(&y, &BeforeMissed::default(), y.pose, 0.2).is_some()
     }
 
     #[test]

@@ -7,7 +7,7 @@ use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians};
 use crate::approach::Approach;
 use crate::crossing::crosses;
 use crate::gains::fire_in_turn;
-use crate::missed::Heard;
+use crate::missed::BeforeMissed;
 use crate::tangent::{Obstacles, Side};
 
 /// Minimum room on the robot's right at which the robot gives way to the right, as people do. With less room, it gives
@@ -34,7 +34,7 @@ const BEHIND: Meters = Meters(0.25);
 pub(crate) struct Passers {
     approach: Approach,
     gives_way: Option<GivesWay>,
-    heard: Heard,
+    before_missed: BeforeMissed,
     /// Number of consecutive turns up to now in which a person was about to cross the way.
     crossed: u32,
     /// Time until which the robot stands still, because a person crosses its way.
@@ -60,7 +60,7 @@ impl Default for Passers {
         Self {
             approach: Approach::default(),
             gives_way: None,
-            heard: Heard::default(),
+            before_missed: BeforeMissed::default(),
             crossed: 0,
             stands_until: Nanos::ZERO,
             back: (Pose::ORIGIN, 0.0),
@@ -81,12 +81,12 @@ impl Passers {
         t: Nanos,
     ) {
         self.look_ahead(y, obstacles, here, goal, t);
-        self.heard.take(y);
+        self.before_missed.take(y);
         if self.gives_way.is_some() {
             (self.crossed, self.stands_until) = (0, Nanos::ZERO);
             return;
         }
-        let person = crosses(y, &self.heard, here, speed.0);
+        let person = crosses(y, &self.before_missed, here, speed.0);
         self.crossed = if person.is_some() { self.crossed.saturating_add(1) } else { 0 };
         if let Some(person) = person.filter(|_| self.crossed >= SURE) {
             if !self.stops(t) {

@@ -267,6 +267,24 @@ fn the_robot_backs_off_from_a_person_who_crosses() {
     assert_eq!(speed(&y), 0.0, "far enough");
 }
 
+/// The law has to know the echo before the missed ping, which the output no longer keeps.
+#[test]
+fn the_robot_stands_for_a_person_whom_a_ping_misses() {
+    let speed = |ranges: [Option<f64>; 4]| {
+        let (mut y, mut speed) = (Sensed::default(), 0.0);
+        let mut law = quark(0.0, 5.0).begin(&y, begun());
+        for (second, range) in (0..).zip(ranges) {
+            y.ping_at(mdle_runtime::SonarId::new(3), range, Nanos(second * 1_000_000_000));
+            for tenth in 0..5 {
+                speed = law.input(&y, Nanos(second * 1_000_000_000 + tenth * 100_000_000)).v.0;
+            }
+        }
+        speed
+    };
+    assert_eq!(speed([Some(3.3), None, Some(2.3), Some(1.8)]), 0.0);
+    assert_eq!(speed([None, None, Some(2.3), Some(1.8)]), 0.2);
+}
+
 /// The corner of a wall may look like a person whenever the robot comes past it.
 #[test]
 fn the_robot_backs_off_once_from_one_place() {
