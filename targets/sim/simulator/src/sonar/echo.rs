@@ -63,15 +63,16 @@ pub(crate) fn echo(walls: &Walls, from: Point, axis: Radians, hearing: &Hearing,
         let heard = if hearing.lobe.is_none() && hearing.facing.is_none() {
             walls.cast_among(reached, from, way, most)
         } else {
-            let lost = hearing.lobe.map_or(0.0, |lobe| (off_axis / lobe.0) * (off_axis / lobe.0));
+            let lost = lost(hearing, off_axis) - fade;
             // A ray without any remaining loudness at the start is not heard at any distance.
-            let is_loud = 1.0 - (lost - fade) >= 0.0;
+            let is_loud = 1.0 - lost >= 0.0;
             let found = is_loud.then(|| walls.found_among(reached, from, way, most)).flatten();
-            found.and_then(|surface| heard((walls, bounced), from, way, &surface, hearing, lost - fade))
+            found.and_then(|surface| heard((walls, bounced), from, way, &surface, hearing, lost))
         };
         // The echo of a corner comes from further away than the point where the ray first hit a wall.
         best = heard.filter(|range| *range < most).or(best);
     }
+    // A sonar without an angular limit hears no edges, only surfaces.
     let scatters = hearing.facing.is_some() && standing;
     let end = scatters.then(|| end_on((walls, reached), (from, axis), hearing, fade, best.unwrap_or(hearing.most)));
     end.flatten().or(best)
@@ -96,15 +97,24 @@ fn end_on(
             return;
         }
         let off_axis = libm::atan2(y * cos - x * sin, x * cos + y * sin);
-        let lost = hearing.lobe.map_or(0.0, |lobe| (off_axis / lobe.0) * (off_axis / lobe.0)) - fade;
-        let left = 1.0 - METRE_COSTS * (range - GAIN_LASTS).max(0.0) - lost;
         let way = Point { x: x / range, y: y / range };
+        let left = left(range, lost(hearing, off_axis) - fade);
         let is_heard = off_axis.abs() < hearing.half_cone.0 && left >= EDGE_COSTS;
         if is_heard && walls.cast_among(reached, from, way, range - BEFORE).is_none() {
             best = Some(range);
         }
     });
     best
+}
+
+/// Returns the loss of a ray at this angle off the axis.
+fn lost(hearing: &Hearing, off_axis: f64) -> f64 {
+    hearing.lobe.map_or(0.0, |lobe| (off_axis / lobe.0) * (off_axis / lobe.0))
+}
+
+/// Returns the remaining loudness of a ray that has already lost `lost` when it has travelled this distance.
+fn left(range: f64, lost: f64) -> f64 {
+    1.0 - METRE_COSTS * (range - GAIN_LASTS).max(0.0) - lost
 }
 
 /// Returns the range of the echo of a ray from this surface; `None` if the echo is too weak. `lost` is the loss of the
@@ -117,7 +127,7 @@ fn heard(
     hearing: &Hearing,
     lost: f64,
 ) -> Option<f64> {
-    let left = 1.0 - METRE_COSTS * (surface.range - GAIN_LASTS).max(0.0) - lost;
+    let left = left(surface.range, lost);
     let Some(facing) = hearing.facing else { return (left >= 0.0).then_some(surface.range) };
     let incidence = libm::acos((-dot(way, surface.normal)).min(1.0)) / facing.0;
     let slant = (1.0 - surface.rough) * incidence * incidence;

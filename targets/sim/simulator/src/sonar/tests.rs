@@ -167,29 +167,42 @@ fn a_wall_end_is_heard_only_near_the_axis() {
     assert_eq!(end(24.0), None);
 }
 
-/// Walls have no thickness, so the end of a wall along the axis is between all rays, or behind the one that goes along
-/// the wall.
+/// Returns the text of a wall whose one end is `distance` metres from a Scout's front transducer and `degrees` off its
+/// axis. The wall is turned by `turned` degrees against the ray to this end.
+fn wall_from(distance: f64, degrees: f64, turned: f64) -> String {
+    let at = |far: f64, degrees: f64| {
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        [far * cos, far * sin]
+    };
+    let ([x, y], [along, across]) = (at(distance, degrees), at(3.0, degrees + turned));
+    format!("[[wall]]\npoints = [[{}, {y}], [{}, {}]]\n", 0.19 + x, 0.19 + x + along, y + across)
+}
+
+/// Returns the range of a Scout's front sonar among these obstacles.
+fn scout_ahead(obstacles: &[String]) -> Option<f64> {
+    range(&pinged(Body::Scout, &[], &obstacles.concat()), 0)
+}
+
+/// Walls have no thickness, so the end of a wall along which a sonar looks is between two rays.
 #[test]
 fn the_end_of_a_wall_is_heard_by_a_sonar_that_looks_along_the_wall() {
-    // The end of a wall at this distance, at this angle off the axis, that is turned by 8° against the ray to it.
-    let end = |distance: f64, degrees: f64, more: &str| {
-        let at = |far: f64, degrees: f64| {
-            let (sin, cos) = libm::sincos(degrees.to_radians());
-            [far * cos, far * sin]
-        };
-        let ([x, y], [along, across]) = (at(distance, degrees), at(3.0, degrees + 8.0));
-        let wall = [0.19 + x, y, 0.19 + x + along, y + across];
-        let text = format!("[[wall]]\npoints = [[{}, {}], [{}, {}]]\n{more}", wall[0], wall[1], wall[2], wall[3]);
-        range(&pinged(Body::Scout, &[], &text), 0)
-    };
     for degrees in [-12.0, -3.0, 0.0, 3.0, 12.0] {
-        assert!(end(1.0, degrees, "").is_some_and(|range| (0.97..1.0).contains(&range)), "{degrees}");
+        let heard = scout_ahead(&[wall_from(1.0, degrees, 8.0)]);
+        assert!(heard.is_some_and(|range| (0.97..1.0).contains(&range)), "{degrees}: {heard:?}");
     }
-    assert_eq!(end(1.0, 14.0, ""), None, "off the axis");
-    assert!(end(4.6, 0.0, "").is_some());
-    assert_eq!(end(4.8, 0.0, ""), None, "too far away");
-    let before = "[[disc]]\nrough = 1\ncentre = [0.9, 0]\nradius = 0.1";
-    assert!(end(1.0, 0.0, before).is_some_and(|range| range < 0.65), "a disc hides the end");
+    assert_eq!(scout_ahead(&[wall_from(1.0, 14.0, 8.0)]), None, "off the axis");
+    assert!(scout_ahead(&[wall_from(4.6, 0.0, 8.0)]).is_some());
+    assert_eq!(scout_ahead(&[wall_from(4.8, 0.0, 8.0)]), None, "too far away");
+    assert_eq!(scout_ahead(&[wall_from(1.0, 0.0, 8.0), turned(0.6, 60.0)]), None, "behind a wall that reflects away");
+}
+
+/// These walls are slanted too much to be heard, and their ends are between two rays.
+#[test]
+fn no_additional_ray_is_aimed_at_an_end_that_is_seen_from_the_side_or_that_touches_a_wall() {
+    let along = wall_from(2.0, 3.5, 8.0);
+    assert!(scout_ahead(std::slice::from_ref(&along)).is_some());
+    assert_eq!(scout_ahead(&[wall_from(2.0, 3.5, 45.0)]), None);
+    assert_eq!(scout_ahead(&[along, wall_from(2.0, 3.5, -40.0)]), None);
 }
 
 #[test]
