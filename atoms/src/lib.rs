@@ -17,6 +17,7 @@ mod approach;
 mod askew;
 mod at_isection;
 mod beside;
+mod between;
 mod bumper;
 mod crossing;
 mod directions;

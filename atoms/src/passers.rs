@@ -5,7 +5,7 @@ use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians};
 
 use crate::approach::Approach;
-use crate::crossing::crosses;
+use crate::crossing::{Driving, crosses};
 use crate::gains::fire_in_turn;
 use crate::missed::BeforeMissed;
 use crate::tangent::{Obstacles, Side};
@@ -26,6 +26,9 @@ const STANDS: f64 = 2.5;
 /// Distance, in metres, from the place where the robot last backed off, within which it does not back off again: a wall
 /// that it mistook for a person whenever it passed would hold it there for ever.
 const ONCE: f64 = 0.5;
+/// Maximum angle between the heading of a robot that backs off and the direction to its goal. Behind a robot that has
+/// turned further, the person may walk.
+const ASTRAY: Radians = Radians::from_degrees(30.0);
 /// Minimum free length of the way behind a robot that backs off.
 const BEHIND: Meters = Meters(0.25);
 
@@ -86,15 +89,20 @@ impl Passers {
             (self.crossed, self.stands_until) = (0, Nanos::ZERO);
             return;
         }
-        let person = crosses(y, &self.before_missed, here, speed.0);
+        let person = crosses(y, &self.before_missed, here, Driving { speed: speed.0, waits: self.stops(t) });
         self.crossed = if person.is_some() { self.crossed.saturating_add(1) } else { 0 };
         if let Some(person) = person.filter(|_| self.crossed >= SURE) {
-            if !self.stops(t) {
+            let begins = !self.stops(t);
+            if begins {
                 self.may_back = self.backed.is_none_or(|place| here.distance(&place).0 > ONCE);
             }
             self.stands_until = self.stands_until.max(after(t, person.passed.max(STANDS)));
-            let back = if self.may_back { person.back } else { 0.0 };
-            self.back = (here, back);
+            let is_astray = Radians(here.theta.0 - goal.0).wrapped().0.abs() > ASTRAY.0;
+            let back = if self.may_back && !is_astray { person.back } else { 0.0 };
+            // A robot that backs off from a person goes on while the person comes nearer.
+            if begins || back > 0.0 {
+                self.back = (here, back);
+            }
             if back > 0.0 {
                 self.backed = Some(here);
             }

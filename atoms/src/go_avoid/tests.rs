@@ -106,7 +106,7 @@ fn the_goal_turns_round_where_the_drift_was_measured_before() {
 /// if the law does not end within 30 s.
 fn ends(y: &Sensed, range: f64, driven: f64) -> Option<Nanos> {
     let mut law = quark(0.0, range).begin(y, begun());
-    law.driven.0 = driven;
+    (law.driven.0, law.headed) = (driven, Some(Nanos::ZERO));
     (0..300).map(|turn| Nanos(turn * 100_000_000)).find(|t| {
         law.input(y, *t);
         law.completed(y, *t)
@@ -265,6 +265,50 @@ fn the_robot_backs_off_from_a_person_who_crosses() {
     assert_eq!(speed(&y), -0.2);
     y.pose.x = Meters(-0.3);
     assert_eq!(speed(&y), 0.0, "far enough");
+}
+
+/// Returns the speeds of a robot that a person approaches at these ranges from the left, one second apart; the robot
+/// has turned by this angle, in degrees, since its law began.
+fn speeds_before_a_person<const N: usize>(ranges: [f64; N], turned: f64) -> [f64; N] {
+    let mut y = Sensed::default();
+    let mut law = quark(0.0, 5.0).begin(&y, begun());
+    y.pose.theta = Radians::from_degrees(turned);
+    let mut second = 0;
+    ranges.map(|range| {
+        y.ping_at(mdle_runtime::SonarId::new(3), Some(range), Nanos(second * 1_000_000_000));
+        let turn = |tenth: u64| Nanos(second * 1_000_000_000 + tenth * 100_000_000);
+        let speed = (0..5).map(|tenth| law.input(&y, turn(tenth)).v.0).fold(0.0, |_, v| v);
+        second += 1;
+        speed
+    })
+}
+
+/// At 1.08 m, the person is less than 1.2 m from the way. From there, the robot would not begin to back off.
+#[test]
+fn a_robot_that_backs_off_goes_on_while_the_person_comes_nearer() {
+    assert_eq!(speeds_before_a_person([2.0, 1.68, 1.36, 1.08], 0.0)[2..], [-0.2, -0.2]);
+    assert_eq!(speeds_before_a_person([1.68, 1.36, 1.08], 0.0)[2], 0.0);
+}
+
+/// Sonar 3 receives echoes of a person who passes ahead of the robot, and sonar 4 of one who comes abreast.
+#[test]
+fn a_robot_that_stands_for_a_person_backs_off_from_another_who_comes_abreast() {
+    let speed = |abreast: [Option<f64>; 3]| {
+        let mut y = Sensed::default();
+        for (second, (range, abreast)) in (0..).zip([2.8, 2.3, 1.8].into_iter().zip(abreast)) {
+            y.ping_at(mdle_runtime::SonarId::new(3), Some(range), Nanos(second * 1_000_000_000));
+            y.ping_at(mdle_runtime::SonarId::new(4), abreast, Nanos(second * 1_000_000_000));
+        }
+        let mut law = quark(0.0, 5.0).begin(&y, begun());
+        (0..10).map(|turn| law.input(&y, Nanos(turn * 100_000_000)).v.0).fold(0.0, |_, v| v)
+    };
+    assert_eq!([speed([None; 3]), speed([Some(2.5), Some(2.0), Some(1.5)])], [0.0, -0.2]);
+}
+
+#[test]
+fn a_robot_that_has_turned_off_its_way_does_not_back_off() {
+    assert_eq!(speeds_before_a_person([2.2, 1.8, 1.2], 25.0)[2], -0.2);
+    assert_ne!(speeds_before_a_person([2.2, 1.8, 1.2], 35.0)[2], -0.2);
 }
 
 /// The law has to know the echo before the missed ping, which the output no longer keeps.

@@ -110,3 +110,11 @@ fn somebody_who_walks_across_is_waited_for() {
     assert_clean("hall", worlds::hall, Body::Scout, 95);
     assert_clean("hall", worlds::hall, Body::Atrv, 90);
 }
+
+/// If the robots did not react, a third of them would collide with the person.
+#[test]
+fn a_person_who_walks_across_an_open_floor_is_let_pass() {
+    assert_clean("lane", worlds::lane, Body::Ideal, 95);
+    assert_clean("lane", worlds::lane, Body::Scout, 90);
+    assert_clean("lane", worlds::lane, Body::Atrv, 90);
+}
