@@ -46,6 +46,11 @@ const SQUEEZES: Nanos = Nanos(30_000_000_000);
 const GOES_ROUND: Nanos = Nanos(60_000_000_000);
 /// Time without progress after which the robot follows ways on its map.
 const HELD_UP: Nanos = Nanos(1_200_000_000);
+/// Time without progress after which a rectangle that has driven less than [`BEGINS`] follows ways on its map. Its map
+/// does not show all walls around it yet, and a way on the map may lead through a wall beside a doorway.
+const HELD_UP_AT_FIRST: Nanos = Nanos(2_000_000_000);
+/// Distance driven since the law began, in metres, up to which [`HELD_UP_AT_FIRST`] applies.
+const BEGINS: f64 = 0.5;
 /// Time without progress after which the law assumes that something prevents the robot from coming nearer, even if the
 /// sonars detect no obstacle. From then on, the possible drift of odometry is added to the distance at which the robot
 /// is near enough.
@@ -275,13 +280,18 @@ impl GoingRound {
         self.narrow.input(y, here, t, ahead)
     }
 
+    /// Returns the time without progress after which the robot, a disc or a rectangle, follows ways on its map.
+    fn held_up(&self, is_disc: bool) -> Nanos {
+        if is_disc || self.driven.0 > BEGINS { HELD_UP } else { HELD_UP_AT_FIRST }
+    }
+
     /// Returns the input in or before a narrow place; `None` elsewhere.
     fn squeeze<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos, chosen: &Chosen) -> Option<Twist> {
         let off = Radians(chosen.direction.0 - here.theta.0).wrapped().0.abs();
         self.headed = self.headed.or((off < ON_THE_SPOT.0).then_some(t));
         let since = self.headed.map_or(Nanos::ZERO, |headed| t.since(headed));
         let stalled = self.progress.stalled(here, &self.goal, t).min(since);
-        if stalled < HELD_UP && !self.narrow.follows() {
+        if stalled < self.held_up(y.is_disc()) && !self.narrow.follows() {
             // Of the corners of a rectangle, and of what sonars that fire in turn heard up to a second ago, the tangent
             // rule knows nothing.
             let rounds = || self.narrow.round(y, here, chosen.direction, self.speed, self.winding);

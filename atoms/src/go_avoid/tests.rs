@@ -232,6 +232,15 @@ fn the_drift_of_the_heading_decides_whether_a_robot_is_askew() {
     assert!(!departs(0.0, 20.0) && !departs(20.0, 0.0));
 }
 
+#[test]
+fn a_rectangle_that_has_just_begun_relies_on_its_map_later() {
+    let y = sized(0.315, 0.27);
+    let mut law = quark(0.0, 5.0).begin(&y, begun());
+    assert!(law.held_up(false) > law.held_up(true));
+    law.driven.0 = 0.6;
+    assert_eq!(law.held_up(false), law.held_up(true));
+}
+
 /// The robot stands beside a wall on its right, where it would drive away in an arc to the left.
 #[test]
 fn a_robot_beside_a_wall_gives_way_before_it_drives_away() {
