@@ -81,7 +81,7 @@ impl<'l> Lints<'l> {
                 lint.help("give it a condition that can be true earlier, or `(null)` where nothing follows it")
             }
             [_] => lint.fix("write {}, or another condition", span, "(null)"),
-            _ => lint.help(format!("remove `{text}`")),
+            _ => lint.help(format!("remove `{text}`, or write `null` instead of it")),
         })
     }
 
