@@ -80,7 +80,7 @@ impl Setup {
         let given = options::start(matches)?;
         let Start(start) = given.map_or(Start(world.start), |(_, start)| start);
         let with_option = |error: StartError| {
-            let hint = hint(&world, make.form(), &walls);
+            let hint = hint(&world, &start, make.form(), &walls);
             match given {
                 Some((text, _)) => format!("--start {text}: {error}; {hint}"),
                 None => {
@@ -125,24 +125,22 @@ impl Setup {
     }
 }
 
-/// Returns a hint for error messages: an option with the default start pose of the world or, if a robot of this form
-/// cannot stand there, with a pose near it.
-fn hint(world: &World, form: Form, walls: &Walls) -> String {
+/// Returns a hint for error messages: an option with a pose near `start` at which a robot of this form can start or, if
+/// there is none, with the world's own start pose.
+fn hint(world: &World, start: &Pose, form: Form, walls: &Walls) -> String {
     let fits = |pose: &Pose| mdle_simulator::check(pose, form, world, walls).is_ok();
     let option = |Pose { x, y, theta }: Pose| {
         // Degrees that were read from a file may have a rounding error in their last digit.
         let degrees = libm::round(theta.degrees() * 1e6) / 1e6;
         format!("`--start {},{},{degrees}`", x.0, y.0)
     };
-    if fits(&world.start) {
-        return format!("the world's own start is {}", option(world.start));
-    }
     // A place with some room is better than the nearest one, from which the robot can hardly turn.
     let is_clear = |pose: &Pose| walls.gap(&Footprint { pose: *pose, form }, MARGIN) >= MARGIN;
-    let clear = around(&world.start).find(|pose| is_clear(pose) && fits(pose));
-    match clear.or_else(|| around(&world.start).find(fits)) {
+    let clear = around(start).find(|pose| is_clear(pose) && fits(pose));
+    match clear.or_else(|| around(start).find(fits)) {
         Some(pose) => format!("there is room at {}", option(pose)),
-        None => "no place with room was found within 2 m of the world's own start".to_owned(),
+        None if fits(&world.start) => format!("the world's own start is {}", option(world.start)),
+        None => "no place with room was found within 2 m of this start".to_owned(),
     }
 }
 

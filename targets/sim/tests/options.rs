@@ -50,9 +50,9 @@ fn bad_starts_are_refused_with_a_hint() {
     let sentences = ["1,2", "-0.6,2,0", "3.65,4.25,0", "11.5,5,0"].map(|start| refused(&["--start", start]));
     insta::assert_snapshot!(sentences.join("\n"), @r#"
     --start 1,2: expected x,y,heading: three numbers in metres and degrees, as in `0.1,-0.05,90`
-    --start -0.6,2,0: the robot, 0.205 m around its centre, would stand in "A west"; the world's own start is `--start 0,0,0`
-    --start 3.65,4.25,0: the robot would stand inside "obstacle"; the world's own start is `--start 0,0,0`
-    --start 11.5,5,0: that is off the floor; the world's own start is `--start 0,0,0`
+    --start -0.6,2,0: the robot, 0.205 m around its centre, would stand in "A west"; there is room at `--start -0.3,2,0`
+    --start 3.65,4.25,0: the robot would stand inside "obstacle"; there is room at `--start 3.65,4.85,0`
+    --start 11.5,5,0: the robot would stand outside the walls of the world; the world's own start is `--start 0,0,0`
     "#);
 }
 
@@ -66,7 +66,7 @@ fn a_noise_that_finds_no_start_is_named() {
     let runs = matches(&["--world", world, "--body", "scout", "--runs", "3", "--start-noise", "50,180"]);
     let batch = (Sim::OBSERVATION.expect("simulated").batch)(&runs, Sim::PERIOD);
     assert!(matches!(batch, Err(Refusal::Usage(of_batch)) if of_batch == sentence), "the same refusal");
-    insta::assert_snapshot!(sentence, @"--start-noise: no random start has room; the last one tried: that is off the floor; give less, as in `0.1,5`");
+    insta::assert_snapshot!(sentence, @"--start-noise: no random start has room; the last one tried: the robot would stand outside the walls of the world; give less, as in `0.1,5`");
 }
 
 /// The start of the world has room for a disc, but not for an ATRV-mini.
@@ -90,10 +90,10 @@ fn no_hint_names_a_start_without_room() {
     insta::assert_snapshot!(sentences, @r#"
     wide.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.55,0`
     across.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.35,180`
-    narrow.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; no place with room was found within 2 m of the world's own start
-    --start 0,0.1,0: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.55,0`
+    narrow.toml:1:9: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; no place with room was found within 2 m of this start
+    --start 0,0.1,0: the robot, 0.63 m long and 0.54 m wide, would stand in "side"; there is room at `--start 0,0.5,0`
     "#);
-    for (world, start) in [(&wide, "0,0.55,0"), (&across, "0,0.35,180")] {
+    for (world, start) in [(&wide, "0,0.55,0"), (&wide, "0,0.5,0"), (&across, "0,0.35,180")] {
         let options = matches(&["--body", "atrv", "--world", world, "--start", start]);
         assert!(Sim::connect(&options, Sim::PERIOD, &StopRequest::default()).is_ok());
     }

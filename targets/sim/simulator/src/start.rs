@@ -46,7 +46,7 @@ impl fmt::Display for StartError {
             Self::Quantity(sentence) => f.write_str(sentence),
             Self::Overlaps(form, name) => write!(f, "the robot, {form}, would stand in {name:?}"),
             Self::Inside(name) => write!(f, "the robot would stand inside {name:?}"),
-            Self::OffTheFloor => write!(f, "that is off the floor"),
+            Self::OffTheFloor => write!(f, "the robot would stand outside the walls of the world"),
             Self::Outside(name) => {
                 write!(f, "the robot would stand outside {name:?}, and the goal or the charger is inside")
             }
