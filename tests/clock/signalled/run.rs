@@ -186,8 +186,13 @@ pub(crate) fn distance(one: &Pose, other: &Pose) -> f64 {
 
 /// Sends a signal to a process for which its parent has not waited yet.
 pub(crate) fn send(signal: i32, process: u32) {
+    assert!(try_send(signal, process));
+}
+
+/// Sends a signal to a process, and returns `true` unless the parent of the process has already waited for its end.
+pub(crate) fn try_send(signal: i32, process: u32) -> bool {
     let kill = format!("kill -{signal} {process}");
-    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    Command::new("sh").args(["-c", &kill]).status().unwrap().success()
 }
 
 /// Gives SIGHUP its default effect in the programs that this program starts, even under `nohup`, which makes them
