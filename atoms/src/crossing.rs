@@ -5,6 +5,7 @@ use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Ping, Pose, Radians, SonarId};
 
 use crate::between::between;
+use crate::directions::{AHEAD, CONE};
 use crate::missed::{BeforeMissed, forward_sonars};
 
 /// Minimum and maximum speed, in m/s, of a person who crosses the way. A slower object is treated as fixed, and faster
@@ -40,6 +41,10 @@ const BACK: f64 = 5.0;
 /// Minimum distance, in metres, between a crossing person and the way. A person nearer to the way is an obstacle, or
 /// walks along the way.
 const ASIDE: f64 = 0.45;
+/// Maximum distance, in metres, between the wall ahead of the robot and the edge of a sonar's cone at which the echoes
+/// of this sonar may come from the wall. The place on a rough wall from which they come moves along the wall faster
+/// than the robot drives.
+const OF_WALL: f64 = 0.5;
 /// Maximum time, in seconds, before a person reaches the robot's way: if the person needs longer, the robot does not
 /// react. A sonar that pings once a second takes two seconds until three pings agree, and the direction of its echoes
 /// is uncertain by several degrees. A robot that stops later may already be where the person walks.
@@ -106,6 +111,23 @@ fn limits([new, middle, old]: [(&Ping, Meters); 3]) -> Option<(f64, f64)> {
     turns.iter().all(|(turned, seconds)| *turned <= TURNS_MOST * seconds).then_some(IN_TURNS)
 }
 
+/// Returns the distance, in metres, from the robot's centre to the object ahead of it; `None` if the newest ping ahead
+/// had no echo.
+fn wall_ahead<Y: SonarRing>(y: &Y) -> Option<Meters> {
+    let range = y.pings(AHEAD).newest_first().next()?.range?;
+    Some(Meters(y.ring_radius().0 + range.0))
+}
+
+/// Returns the distance, in metres along the heading of `here`, of the place where an echo of `sonar` came from if it
+/// came from the edge of the sonar's cone that is nearer to the front.
+fn edge(sonar: SonarId, (ping, range): (&Ping, Meters), here: Pose, ring_radius: Meters) -> f64 {
+    let axis = ping.axis(sonar);
+    let towards_front = libm::copysign(CONE.0, -sonar.bearing().wrapped().0);
+    let place = axis.towards(Radians(axis.theta.0 + towards_front), Meters(ring_radius.0 + range.0));
+    let (sin, cos) = libm::sincos(here.theta.0);
+    (place.x.0 - here.x.0) * cos + (place.y.0 - here.y.0) * sin
+}
+
 /// Returns the person whose three newest echoes, newest first, `sonar` has received; `None` if they are not from such a
 /// person. The conditions are those of [`crosses`]. `sin` and `cos` are the sine and the cosine of the heading of
 /// `here`.
@@ -138,6 +160,9 @@ fn comes<Y: DiffDrive + SonarRing>(
         (false, _) => new.along > apart,
     };
     if !(is_ahead && new.across.abs() > ASIDE) {
+        return None;
+    }
+    if wall_ahead(y).is_some_and(|wall| wall.0 < edge(sonar, echoes[0], here, y.ring_radius()) + OF_WALL) {
         return None;
     }
     let middle = echo(middle);

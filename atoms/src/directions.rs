@@ -8,7 +8,7 @@ use mdle_runtime::{Meters, Nanos, Ping, Radians, SONARS, SonarId};
 pub(crate) const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
 
 /// The sonar in whose direction the robot drives.
-const AHEAD: SonarId = SonarId::new(0);
+pub(crate) const AHEAD: SonarId = SonarId::new(0);
 
 /// Maximum angle between a direction and the axis of a ping that is used for it. It is a little more than half the
 /// angle between two sonars, so that a slowly turning robot always has a sonar in each direction.

@@ -136,3 +136,18 @@ fn a_robot_that_waits_backs_off_from_a_person_who_comes_abreast() {
     assert!(back([2.5, 2.0, 1.5]).is_some_and(|back| back > 0.6), "{:?}", back([2.5, 2.0, 1.5]));
     assert_eq!(back([1.5, 1.5, 1.5]), None, "a wall");
 }
+
+/// Sonar 3 faces 67.5° to the left. The edge of its cone, at 55°, is 1.18 m ahead of the robot's centre when the range
+/// is 1.8 m.
+#[test]
+fn echoes_that_may_come_from_the_wall_ahead_are_nobody() {
+    let waits = |wall: Option<f64>| {
+        let mut y = Sensed::default();
+        y.ping_at(SonarId::new(0), wall, Nanos(1_500_000_000));
+        for (second, range) in (0..).zip([2.8, 2.3, 1.8]) {
+            y.ping_at(SonarId::new(3), Some(range), Nanos(second * 1_000_000_000));
+        }
+        crosses(&y, &BeforeMissed::default(), y.pose, DRIVES).is_some()
+    };
+    assert!(!waits(Some(1.2)) && waits(Some(1.6)) && waits(None));
+}
