@@ -233,12 +233,17 @@ fn the_drift_of_the_heading_decides_whether_a_robot_is_askew() {
 }
 
 #[test]
-fn a_rectangle_that_has_just_begun_relies_on_its_map_later() {
-    let y = sized(0.315, 0.27);
-    let mut law = quark(0.0, 5.0).begin(&y, begun());
-    assert!(law.held_up(false) > law.held_up(true));
-    law.driven.0 = 0.6;
-    assert_eq!(law.held_up(false), law.held_up(true));
+fn a_rectangle_that_has_just_begun_follows_its_map_later() {
+    let follows = |driven: f64, seconds: f64| {
+        let y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+        let mut law = quark(0.0, 5.0).begin(&y, begun());
+        law.driven.0 = driven;
+        let chosen = Chosen { direction: Radians(0.0), ahead: Meters(0.2), to_goal: None };
+        law.squeeze(&y, y.pose, Nanos::ZERO, &chosen);
+        law.squeeze(&y, y.pose, Nanos((seconds * 1e9) as u64), &chosen).is_some()
+    };
+    assert!(!follows(0.0, 1.5) && follows(0.0, 2.1));
+    assert!(!follows(0.6, 1.1) && follows(0.6, 1.5));
 }
 
 /// The robot stands beside a wall on its right, where it would drive away in an arc to the left.
