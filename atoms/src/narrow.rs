@@ -30,6 +30,11 @@ const AHEAD: Meters = Meters(0.4);
 /// Maximum time for which the robot only turns on the spot. After this time, it drives with less room, because the
 /// cells of the map are coarse.
 const STANDS: Nanos = Nanos(4_000_000_000);
+/// Time after which a rectangular body that only turns on the spot backs off, and for how long it does. No sonar faces
+/// the strip before the middle of such a body. If an echo from elsewhere has marked a cell of this strip as occupied,
+/// no ping marks the cell as free before the robot has backed off.
+const BACKS_AFTER: Nanos = Nanos(8_000_000_000);
+const BACKS: Nanos = Nanos(4_000_000_000);
 
 /// The map, and the way on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,11 +48,13 @@ pub(crate) struct Narrow {
     found: Nanos,
     /// Time since which the robot has not driven but only turned on the spot; `None` while it drives.
     stands: Option<Nanos>,
+    /// Time until which the robot backs off; `None` if it does not.
+    backs: Option<Nanos>,
 }
 
 impl Narrow {
     pub(crate) const EMPTY: Self =
-        Self { map: Map::EMPTY, way: None, searched: Nanos::ZERO, found: Nanos::ZERO, stands: None };
+        Self { map: Map::EMPTY, way: None, searched: Nanos::ZERO, found: Nanos::ZERO, stands: None, backs: None };
 
     /// Updates the map with the pings since the last turn; the robot is at `here`.
     pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
@@ -100,6 +107,9 @@ impl Narrow {
         t: Nanos,
         mut ahead: Ahead,
     ) -> Option<Twist> {
+        if let Some(back) = self.back(y, here, t) {
+            return Some(back);
+        }
         let more = if self.way.is_some() { LEAVES } else { Meters(0.0) };
         let is_free = ahead.free.is_some_and(|(free, asked)| free.0 >= asked.0 + more.0);
         if is_free && self.has_room(y, here) && (self.way.is_none() || self.is_clear(y, here, &ahead.goal)) {
@@ -121,6 +131,24 @@ impl Narrow {
         let twist = self.towards(y, here, next, (ahead.speed, ahead.winding), is_bold)?;
         self.stands = self.stands.or(Some(t)).filter(|_| twist.v.0 == 0.0);
         Some(twist)
+    }
+
+    /// Returns the input of a rectangular body that backs off; `None` if it does not, or cannot.
+    fn back<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose, t: Nanos) -> Option<Twist> {
+        if !y.is_disc() && self.stands.is_some_and(|since| t.since(since) > BACKS_AFTER) {
+            (self.stands, self.backs) = (None, Some(Nanos(t.0.saturating_add(BACKS.0))));
+        }
+        self.backs = self.backs.filter(|until| t < *until);
+        self.backs?;
+        let back = self.straight_back(y, here);
+        self.backs = self.backs.filter(|_| back.is_some());
+        back
+    }
+
+    /// Returns the input that moves the body straight back; `None` if it would touch something.
+    #[inline(never)]
+    fn straight_back<Y: DiffDrive + SonarRing>(&self, y: &Y, here: Pose) -> Option<Twist> {
+        Surroundings::of(y, &self.map, here).back(MetersPerSecond(FASTEST))
     }
 
     /// Returns the input that brings the body nearest to a place; `None` if every movement would touch something.
@@ -165,7 +193,14 @@ impl Narrow {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::Sensed;
+    use crate::trial::{Sensed, sized};
+
+    /// Returns data for a robot whose tangent rule has chosen the direction ahead, and whose goal is 5 m ahead.
+    fn ahead(y: &Sensed, free: Option<(Meters, Meters)>) -> Ahead {
+        let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
+        let (near, from, speed) = (Meters(0.0), Meters(5.0), MetersPerSecond(0.2));
+        Ahead { goal, near, from, chosen: Radians(0.0), free, speed, winding: Winding::begin(y), before: None }
+    }
 
     /// Returns `true` if a robot that follows a way leaves it, with a jamb 0.3 m ahead of its centre and `left` metres
     /// to the left. The sonars do not detect the jamb.
@@ -174,16 +209,7 @@ mod tests {
         let next = Next { x: 0.4, y: -0.1, is_straight: false };
         let mut narrow = Narrow { way: follows.then_some(next), ..Narrow::EMPTY };
         narrow.map.occupy((0.3, left), (0.3, left + 0.5));
-        let ahead = Ahead {
-            goal: Pose { x: Meters(5.0), ..Pose::ORIGIN },
-            near: Meters(0.0),
-            from: Meters(5.0),
-            chosen: Radians(0.0),
-            free: Some((Meters(3.0), Meters(0.5))),
-            speed: MetersPerSecond(0.2),
-            winding: Winding::begin(&y),
-            before: None,
-        };
+        let ahead = ahead(&y, Some((Meters(3.0), Meters(0.5))));
         narrow.input(&y, Pose::ORIGIN, Nanos(1), ahead).is_none()
     }
 
@@ -192,5 +218,34 @@ mod tests {
         assert!(!leaves(0.2, true));
         assert!(leaves(0.35, true), "the body passes the jamb");
         assert!(leaves(0.2, false), "a robot on no way is led by its sonars");
+    }
+
+    /// Returns the seconds, of the first fifteen, in which a body with this map backs off, as bits. It has only turned
+    /// on the spot since time 0.
+    fn backs(y: &Sensed, map: Map) -> u64 {
+        let mut narrow = Narrow { map, stands: Some(Nanos::ZERO), ..Narrow::EMPTY };
+        let mut backs = |second: &u64| narrow.back(y, Pose::ORIGIN, Nanos(second * 1_000_000_000)).is_some();
+        (0..15).filter(&mut backs).map(|second| 1 << second).sum()
+    }
+
+    #[test]
+    fn a_rectangle_that_only_turns_backs_off() {
+        let atrv = sized(0.315, 0.27);
+        assert_eq!(backs(&atrv, Map::EMPTY), 0b1_1110_0000_0000);
+        assert_eq!(backs(&Sensed::default(), Map::EMPTY), 0, "a disc");
+        let mut behind = Map::EMPTY;
+        behind.occupy((-0.38, -0.3), (-0.38, 0.3));
+        assert_eq!(backs(&atrv, behind), 0, "an obstacle behind it");
+    }
+
+    #[test]
+    fn a_robot_that_backs_off_does_so_even_if_the_way_is_free() {
+        let y = sized(0.315, 0.27);
+        let mut narrow = Narrow { stands: Some(Nanos::ZERO), ..Narrow::EMPTY };
+        for (second, v) in [(9, Some(-FASTEST)), (12, Some(-FASTEST)), (13, None)] {
+            let free = Some((Meters(3.0), Meters(0.5)));
+            let twist = narrow.input(&y, Pose::ORIGIN, Nanos(second * 1_000_000_000), ahead(&y, free));
+            assert_eq!(twist.map(|twist| twist.v.0), v, "{second} s");
+        }
     }
 }

@@ -153,10 +153,16 @@ impl Surroundings {
         if self.half_length > 0.0 { SWINGS * (omega.abs() / SWINGS_AT).min(1.0) } else { 0.0 }
     }
 
-    /// Returns the cost of a movement, in metres; `None` if the body would come nearer to an obstacle than `kept`
-    /// metres and does not move away from it. `back` is the angle to the place by the longer turn; `None` if the robot
-    /// may turn the shorter way.
-    fn cost(&self, v: f64, omega: f64, now: f64, kept: f64, aim: &Aim, back: Option<f64>) -> Option<f64> {
+    /// Returns the input that moves the body straight back at `speed`; `None` if it would touch something.
+    pub(crate) fn back(&self, speed: MetersPerSecond) -> Option<Twist> {
+        let twist = Twist { v: MetersPerSecond(-speed.0), omega: RadiansPerSecond(0.0) };
+        self.moves(twist.v.0, 0.0, self.now(), 0.0).map(|_| twist)
+    }
+
+    /// Returns the pose at the end of a movement, relative to the body's present pose, and the minimum distance, in
+    /// metres, between the body and an occupied cell on the way; `None` if the body would come nearer to an obstacle
+    /// than `kept` metres and does not move away from it. `now` is the present distance.
+    fn moves(&self, v: f64, omega: f64, now: f64, kept: f64) -> Option<((f64, f64, f64), f64)> {
         let (mut least, mut end, mut before) = (f64::INFINITY, (0.0, 0.0, 0.0), now);
         for t in TIMES {
             let theta = omega * t;
@@ -173,6 +179,13 @@ impl Surroundings {
             least = least.min(room);
             (end, before) = ((x, y, theta), room);
         }
+        Some((end, least))
+    }
+
+    /// Returns the cost of a movement, in metres; `None` if the body cannot make it, as in [`Self::moves`]. `back` is
+    /// the angle to the place by the longer turn; `None` if the robot may turn the shorter way.
+    fn cost(&self, v: f64, omega: f64, now: f64, kept: f64, aim: &Aim, back: Option<f64>) -> Option<f64> {
+        let (end, least) = self.moves(v, omega, now, kept)?;
         let (x, y, theta) = end;
         let (dx, dy) = (aim.ahead - x, aim.left - y);
         let Radians(off) = Radians(libm::atan2(dy, dx) - theta).wrapped();
