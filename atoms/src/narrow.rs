@@ -236,6 +236,10 @@ mod tests {
         let mut behind = Map::EMPTY;
         behind.occupy((-0.38, -0.3), (-0.38, 0.3));
         assert_eq!(backs(&atrv, behind), 0, "an obstacle behind it");
+        let mut narrow = Narrow { map: behind, stands: Some(Nanos::ZERO), ..Narrow::EMPTY };
+        assert_eq!(narrow.back(&atrv, Pose::ORIGIN, Nanos(9_000_000_000)), None);
+        narrow.map = Map::EMPTY;
+        assert_eq!(narrow.back(&atrv, Pose::ORIGIN, Nanos(10_000_000_000)), None, "it has given up backing off");
     }
 
     #[test]
