@@ -128,6 +128,11 @@ fn edge(sonar: SonarId, (ping, range): (&Ping, Meters), here: Pose, ring_radius:
     (place.x.0 - here.x.0) * cos + (place.y.0 - here.y.0) * sin
 }
 
+/// Returns `true` if this echo of `sonar` may come from the wall ahead of the robot.
+fn may_be_wall_ahead<Y: SonarRing>(y: &Y, sonar: SonarId, echo: (&Ping, Meters), here: Pose) -> bool {
+    wall_ahead(y).is_some_and(|wall| wall.0 < edge(sonar, echo, here, y.ring_radius()) + OF_WALL)
+}
+
 /// Returns the person whose three newest echoes, newest first, `sonar` has received; `None` if they are not from such a
 /// person. The conditions are those of [`crosses`]. `sin` and `cos` are the sine and the cosine of the heading of
 /// `here`.
@@ -162,9 +167,6 @@ fn comes<Y: DiffDrive + SonarRing>(
     if !(is_ahead && new.across.abs() > ASIDE) {
         return None;
     }
-    if wall_ahead(y).is_some_and(|wall| wall.0 < edge(sonar, echoes[0], here, y.ring_radius()) + OF_WALL) {
-        return None;
-    }
     let middle = echo(middle);
     let second = approach(&middle, &new);
     if !moves(second) {
@@ -181,7 +183,8 @@ fn comes<Y: DiffDrive + SonarRing>(
     let back = if is_far && seconds < BACK { (apart + CLEAR - along).max(0.0) } else { 0.0 };
     let crossing = Crossing { passed: seconds + apart / mean, back };
     let is_steady = first.min(second) >= slowest && first.max(second) <= steady * first.min(second);
-    (moves(first) && is_steady && is_nearer && meets).then_some(crossing)
+    let comes = moves(first) && is_steady && is_nearer && meets;
+    (comes && !may_be_wall_ahead(y, sonar, echoes[0], here)).then_some(crossing)
 }
 
 #[cfg(test)]
