@@ -46,6 +46,12 @@ fn goes_round_a_box_at_the_wall_of_a_hallway() {
     assert_eq!(arrived(&hallway(1.5, "[[box]]\nmin = [3, -0.75]\nmax = [3.5, -0.35]")), 10);
 }
 
+/// Before ideal sonars heard the end of a wall that points at them, 4 of these robots passed it.
+#[test]
+fn goes_round_the_end_of_a_wall_along_its_way() {
+    assert_eq!(arrived(&hallway(2.0, "[[wall]]\npoints = [[3, 0.002], [3.6, 0.002]]")), 10);
+}
+
 #[test]
 fn goes_round_a_box_in_the_middle_of_a_wide_hallway() {
     assert_eq!(arrived(&hallway(2.0, "[[box]]\ncentre = [3, 0]\nsize = [0.4, 0.4]")), 10);

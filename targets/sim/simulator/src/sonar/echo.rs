@@ -10,7 +10,7 @@
 //! aimed at each moving object and each other robot, of which there are few.
 //!
 //! Walls have no thickness, so rays that go along a wall do not meet its end. The echo that its edge scatters is
-//! therefore computed separately.
+//! therefore computed separately. The sonars of the ideal body hear it in all of their cone.
 
 use mdle_runtime::Radians;
 
@@ -60,7 +60,7 @@ pub(crate) fn echo(walls: &Walls, from: Point, axis: Radians, hearing: &Hearing,
         let most = best.unwrap_or(hearing.most);
         let (sin, cos) = libm::sincos(axis.0 + off_axis);
         let way = Point { x: cos, y: sin };
-        let heard = if hearing.lobe.is_none() && hearing.facing.is_none() {
+        let heard = if is_lossless(hearing) {
             walls.cast_among(reached, from, way, most)
         } else {
             let lost = lost(hearing, off_axis) - fade;
@@ -72,9 +72,7 @@ pub(crate) fn echo(walls: &Walls, from: Point, axis: Radians, hearing: &Hearing,
         // The echo of a corner comes from further away than the point where the ray first hit a wall.
         best = heard.filter(|range| *range < most).or(best);
     }
-    // A sonar without an angular limit hears no edges, only surfaces.
-    let scatters = hearing.facing.is_some() && standing;
-    let end = scatters.then(|| end_on((walls, reached), (from, axis), hearing, fade, best.unwrap_or(hearing.most)));
+    let end = standing.then(|| end_on((walls, reached), (from, axis), hearing, fade, best.unwrap_or(hearing.most)));
     end.flatten().or(best)
 }
 
@@ -87,7 +85,8 @@ fn end_on(
     fade: f64,
     most: f64,
 ) -> Option<f64> {
-    let reach = most.min(GAIN_LASTS + (1.0 + fade - EDGE_COSTS) / METRE_COSTS);
+    let is_lossless = is_lossless(hearing);
+    let reach = if is_lossless { most } else { most.min(GAIN_LASTS + (1.0 + fade - EDGE_COSTS) / METRE_COSTS) };
     let (sin, cos) = libm::sincos(axis.0);
     let mut best = None;
     walls.free_ends().near(from, reach, |end, along| {
@@ -99,12 +98,17 @@ fn end_on(
         let off_axis = libm::atan2(y * cos - x * sin, x * cos + y * sin);
         let way = Point { x: x / range, y: y / range };
         let left = left(range, lost(hearing, off_axis) - fade);
-        let is_heard = off_axis.abs() < hearing.half_cone.0 && left >= EDGE_COSTS;
+        let is_heard = off_axis.abs() < hearing.half_cone.0 && (is_lossless || left >= EDGE_COSTS);
         if is_heard && walls.cast_among(reached, from, way, range - BEFORE).is_none() {
             best = Some(range);
         }
     });
     best
+}
+
+/// Returns `true` if everything in the cone is heard, at any angle.
+fn is_lossless(hearing: &Hearing) -> bool {
+    hearing.lobe.is_none() && hearing.facing.is_none()
 }
 
 /// Returns the loss of a ray at this angle off the axis.
