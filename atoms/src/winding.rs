@@ -12,10 +12,18 @@ use crate::gains::Gains;
 /// Angle, in radians, up to which the robot always turns the shorter way.
 const SHORT: f64 = core::f64::consts::FRAC_PI_2;
 
+/// Angle, in radians, from which a direction is treated as behind the robot. Such a direction may be to the left of the
+/// robot in one turn and to the right in the next.
+const BEHIND: f64 = 2.6;
+/// Minimum angle, in radians, from turn to turn, at which the robot turns.
+const TURNS: f64 = 0.01;
+
 /// The angle turned, counter-clockwise positive, which may exceed a full circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Winding {
     turned: f64,
+    /// Angle turned from the turn before to the last one.
+    last: f64,
     /// Angle turned from which the robot turns back instead of continuing in the same direction.
     most: f64,
 }
@@ -23,12 +31,13 @@ pub(crate) struct Winding {
 impl Winding {
     /// Returns the winding of a body that has not turned yet.
     pub(crate) fn begin<Y: DiffDrive + SonarRing>(y: &Y) -> Self {
-        Self { turned: 0.0, most: Gains::of(y).winds_most }
+        Self { turned: 0.0, last: 0.0, most: Gains::of(y).winds_most }
     }
 
     /// Adds the turn from one pose to the next.
     pub(crate) fn take(&mut self, before: &Pose, here: &Pose) {
-        self.turned += Radians(here.theta.0 - before.theta.0).wrapped().0;
+        self.last = Radians(here.theta.0 - before.theta.0).wrapped().0;
+        self.turned += self.last;
     }
 
     /// Returns the angle turned since the law began, counter-clockwise positive.
@@ -37,11 +46,14 @@ impl Winding {
     }
 
     /// Returns the angle by which the robot has to turn to a direction at the angle `off`, from -π to π. It is the
-    /// angle of the longer turn if `off` is large and the robot has already turned far in the direction of `off`.
+    /// angle of the longer turn if `off` is large and the robot has already turned far in the direction of `off`, and
+    /// if the direction is behind the robot and the robot already turns the longer way.
     pub(crate) fn turn_to(self, Radians(off): Radians) -> Radians {
-        let total = self.turned + off;
+        let (total, longer) = (self.turned + off, off - TAU.copysign(off));
         let winds = off.abs() > SHORT && total.abs() > self.most && total * off > 0.0;
-        Radians(if winds { off - TAU.copysign(off) } else { off })
+        let turns_on = off.abs() > BEHIND && self.last * longer > 0.0 && self.last.abs() > TURNS;
+        let is_far = (self.turned + longer).abs() > self.most;
+        Radians(if winds || turns_on && !is_far { longer } else { off })
     }
 }
 
@@ -71,6 +83,18 @@ mod tests {
         assert_eq!(turn_to(&atrv, &[-170.0, -170.0], -100.0), 260.0);
         assert_eq!(turn_to(&atrv, &[90.0, 90.0, 90.0], 80.0), 80.0, "a small turn is not worth a circle");
         assert_eq!(turn_to(&atrv, &[170.0, 170.0, 170.0], -150.0), -150.0, "it turns back already");
+    }
+
+    #[test]
+    fn a_robot_turns_on_to_a_direction_behind_it() {
+        let scout = Sensed { confirmation: 2, ..Sensed::default() };
+        assert_eq!(turn_to(&scout, &[5.0], 175.0), 175.0);
+        assert_eq!(turn_to(&scout, &[5.0], -175.0), 185.0, "it would turn to and fro");
+        assert_eq!(turn_to(&scout, &[-5.0], 160.0), -200.0);
+        assert_eq!(turn_to(&scout, &[5.0], -140.0), -140.0, "the direction is on its right");
+        assert_eq!(turn_to(&scout, &[5.0, 0.3], -175.0), -175.0, "it hardly turns");
+        let atrv = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+        assert_eq!(turn_to(&atrv, &[90.0, 5.0], -175.0), -175.0, "it has turned far");
     }
 
     #[test]
