@@ -68,6 +68,9 @@ pub(crate) struct Gains {
     /// passage 1.2 m wide close it for a wide body. A small body still passes, and it needs the ends of walls, which
     /// its sonars detect from few directions only.
     pub(crate) confirms_memory: bool,
+    /// `goAvoid`: room around the body, in metres, below which a place is narrow. A robot all of whose sonars ping in
+    /// every turn hears nearly everything around it. Its map is coarse, but shows the end of a wall between two sonars.
+    pub(crate) room: f64,
     /// `goAvoid`: weights of the evidence on the map. An echo of a jamb may come from anywhere on an arc that reaches
     /// up to 20 cm into the doorway. With the weights of the other bodies, further echoes increase the evidence of
     /// cells again that pings have passed, and doorways become too narrow for a Scout. ATRV-minis touched jambs more
@@ -106,6 +109,7 @@ const RING: Gains = Gains {
     room_at: 0.6,
     beyond: 0.0,
     confirms_memory: false,
+    room: 0.04,
     evidence: EVIDENCE,
     factors: FACTORS,
     too_near_costs: 3.0,
@@ -125,6 +129,7 @@ const SCOUT: Gains = Gains {
     room_at: 0.6,
     beyond: 0.0,
     confirms_memory: false,
+    room: 0.1,
     evidence: Evidence { hit: 2, below: 0, miss: 3, edges: 0.6 },
     factors: [0, 4, 3, 3, 3, 3, 2, 1],
     too_near_costs: 3.0,

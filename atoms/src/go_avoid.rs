@@ -7,7 +7,7 @@ use mdle_runtime::{
 };
 
 use crate::beside::Beside;
-use crate::gains::{Gains, fire_in_turn};
+use crate::gains::Gains;
 use crate::memory::Memory;
 use crate::narrow::Narrow;
 use crate::passers::Passers;
@@ -292,10 +292,9 @@ impl GoingRound {
         let since = self.headed.map_or(Nanos::ZERO, |headed| t.since(headed));
         let stalled = self.progress.stalled(here, &self.goal, t).min(since);
         if stalled < self.held_up(y.is_disc()) && !self.narrow.follows() {
-            // Of the corners of a rectangle, and of what sonars that fire in turn heard up to a second ago, the tangent
-            // rule knows nothing.
-            let rounds = || self.narrow.round(y, here, chosen.direction, self.speed, self.winding);
-            return fire_in_turn(y).then(rounds).flatten();
+            // Of the corners of a rectangle, of what sonars that fire in turn heard up to a second ago, and of what
+            // lies between two sonars, the tangent rule knows nothing.
+            return self.narrow.round(y, here, chosen.direction, self.speed, self.winding);
         }
         // A disc can turn in every place that it can reach. With this rule, fewer Scouts found their way in a maze.
         if !y.is_disc()

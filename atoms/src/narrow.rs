@@ -4,13 +4,12 @@
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
 
+use crate::gains::Gains;
 use crate::map::Map;
 use crate::swept::{Aim, Surroundings};
 use crate::way::{Ahead, Next, way};
 use crate::winding::Winding;
 
-/// Room around the body, in metres, below which a place is narrow.
-const ROOM: f64 = 0.1;
 /// Distance by which the free way ahead must exceed the look-ahead before the robot leaves the way on the map.
 const LEAVES: Meters = Meters(0.4);
 /// Length of the way to the goal, in metres, that must be free on the map before the robot leaves the way on the map.
@@ -186,7 +185,7 @@ impl Narrow {
     /// Returns `true` if nothing on the map is near the body.
     #[inline(never)]
     fn has_room<Y: DiffDrive + SonarRing>(&self, y: &Y, here: Pose) -> bool {
-        Surroundings::of(y, &self.map, here).now() > ROOM
+        Surroundings::of(y, &self.map, here).now() > Gains::of(y).room
     }
 }
 
@@ -218,6 +217,23 @@ mod tests {
         assert!(!leaves(0.2, true));
         assert!(leaves(0.35, true), "the body passes the jamb");
         assert!(leaves(0.2, false), "a robot on no way is led by its sonars");
+    }
+
+    /// Returns `true` if a robot with these sonars keeps away from a wall ahead, to its left, which they do not detect.
+    /// There is this much room between its body and the wall.
+    fn keeps_off(confirmation: usize, room: f64) -> bool {
+        let y = Sensed { confirmation, ..Sensed::default() };
+        let mut narrow = Narrow::EMPTY;
+        let left = y.half_width().0 + room;
+        narrow.map.occupy((0.0, left), (0.5, left));
+        let speed = MetersPerSecond(0.4);
+        narrow.round(&y, Pose::ORIGIN, Radians(0.0), speed, Winding::begin(&y)).is_some()
+    }
+
+    #[test]
+    fn a_robot_keeps_off_walls_on_the_map_that_it_does_not_hear() {
+        assert_eq!([0.02, 0.07, 0.13].map(|room| keeps_off(2, room)), [true, true, false], "sonars fire in turn");
+        assert_eq!([0.02, 0.07, 0.13].map(|room| keeps_off(3, room)), [true, false, false], "all ping in every turn");
     }
 
     /// Returns the seconds, of the first fifteen, in which a body with this map backs off, as bits. It has only turned
