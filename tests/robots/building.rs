@@ -1,8 +1,8 @@
 //! Tests two plans, written as a reader of the book would, in a building that was drawn after the control laws had been
 //! written. Neither plan was changed after its first run.
 //!
-//! `MDLE_FIRST=7870000 MDLE_LONG=15` tries 300 seeds. With them, the ideal body arrives in all runs, a Scout in 299 by
-//! measures and in 298 by landmarks, and an ATRV-mini in 290 and 298.
+//! `MDLE_FIRST=7880000 MDLE_LONG=15` tries 300 seeds. With them, the ideal body and a Scout arrive in all runs, and an
+//! ATRV-mini in 291 by measures and in 295 by landmarks.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, reason = "a test tells what happened")]
 
 use std::time::Duration;
