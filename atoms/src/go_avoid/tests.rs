@@ -181,22 +181,23 @@ fn the_turn_at_the_beginning_is_no_delay() {
 }
 
 /// A wall 4 cm beside a rectangle is in the way of its corners, not in that of a disc, which turns as fast as movements
-/// on the map are, or as the tangent rule turns a body whose sonars all ping in every turn.
+/// on the map are, or as the tangent rule turns a body whose sonars all ping in every turn. A wall that such a body
+/// nearly touches is in its way too.
 #[test]
 fn a_body_whose_sonars_fire_in_turn_looks_at_its_map_before_it_turns() {
-    let turns = |mut y: Sensed| {
+    let turns = |mut y: Sensed, range: f64| {
         let mut law = quark(90.0, 5.0).begin(&y, begun());
         let mut turns = |turn: u64| {
             y.now = Nanos(turn * 100_000_000);
-            y.ping_at(mdle_runtime::SonarId::new(12), Some(0.12), y.now);
+            y.ping_at(mdle_runtime::SonarId::new(12), Some(range), y.now);
             law.input(&y, y.now).omega.0
         };
         (1..=5).map(&mut turns).fold(0.0, |_, omega| omega)
     };
-    let atrv = turns(Sensed { confirmation: 2, ..sized(0.315, 0.27) });
+    let atrv = turns(Sensed { confirmation: 2, ..sized(0.315, 0.27) }, 0.12);
     assert!(atrv < 0.2, "{atrv}");
-    assert_eq!(turns(Sensed { confirmation: 2, ..Sensed::default() }), 0.7);
-    assert_eq!(turns(Sensed::default()), FASTEST);
+    assert_eq!(turns(Sensed { confirmation: 2, ..Sensed::default() }, 0.12), 0.7);
+    assert_eq!([0.12, 0.05].map(|range| turns(Sensed::default(), range)), [FASTEST, 0.7]);
 }
 
 /// In a dead end whose ways all lead back, the robot drives back, and its detour changes sides.
