@@ -15,14 +15,14 @@ const SHORT: f64 = core::f64::consts::FRAC_PI_2;
 /// Angle, in radians, from which a direction is treated as behind the robot. Such a direction may be to the left of the
 /// robot in one turn and to the right in the next.
 const BEHIND: f64 = 2.6;
-/// Minimum angle, in radians, from turn to turn, at which the robot turns.
+/// Angle, in radians, between two successive outputs above which the robot is treated as turning.
 const TURNS: f64 = 0.01;
 
 /// The angle turned, counter-clockwise positive, which may exceed a full circle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Winding {
     turned: f64,
-    /// Angle turned from the turn before to the last one.
+    /// Angle turned between the last two outputs, counter-clockwise positive.
     last: f64,
     /// Angle turned from which the robot turns back instead of continuing in the same direction.
     most: f64,
@@ -46,8 +46,8 @@ impl Winding {
     }
 
     /// Returns the angle by which the robot has to turn to a direction at the angle `off`, from -π to π. It is the
-    /// angle of the longer turn if `off` is large and the robot has already turned far in the direction of `off`, and
-    /// if the direction is behind the robot and the robot already turns the longer way.
+    /// angle of the longer turn in two cases: `off` is large, and the robot has already turned far in the direction of
+    /// `off`; or the direction is behind the robot, and the robot is turning away from `off`.
     pub(crate) fn turn_to(self, Radians(off): Radians) -> Radians {
         let (total, longer) = (self.turned + off, off - TAU.copysign(off));
         let winds = off.abs() > SHORT && total.abs() > self.most && total * off > 0.0;
