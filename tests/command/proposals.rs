@@ -324,3 +324,14 @@ fn a_turn_rate_beyond_a_robot_may_be_in_degrees() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("E0402") && message.contains("for degrees per second write `45deg/s`"), "{message}");
 }
+
+/// Without its sign, the range would lead to a point in the opposite direction.
+#[test]
+fn a_negative_range_keeps_its_direction() {
+    let folder = folder("proposals_range");
+    fs::write(folder.join("plan.mdle"), "{ P (bumper) (Atom (wait 5s) (goAvoid 0 -3 20)) }").unwrap();
+    let output = run_mdlec(&folder, &["check", "plan.mdle", "--target", "sim"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    let help = "for the opposite direction add 180 to the bearing, and write `3`";
+    assert!(message.contains("E0402") && message.contains(help), "{message}");
+}

@@ -2,7 +2,7 @@
 
 use super::examples::example;
 use super::ranges::{limit, meant_in_range};
-use super::sonars::DIRECTIONS;
+use super::sonars::{DIRECTIONS, faces};
 use super::{Fitted, Fitting, Value};
 use crate::alphabet::{Origin, Param, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
@@ -91,10 +91,12 @@ impl Fitting<'_> {
                 "`{}` cannot do this: `{quark}` takes `{}` from {least} to {most}{unit}",
                 self.robot, param.name
             );
-            return Err(meant_in_range(Diagnostic::new(Code::E0402, message, number.span, here), number, param).into());
+            let report = Diagnostic::new(Code::E0402, message, number.span, here);
+            return Err(meant_in_range(report, number, param, self.declaration).into());
         }
         let message = format!("`{quark}` takes `{}` from {} to {}{unit}", param.name, limit(least), limit(most));
-        let report = meant_in_range(Diagnostic::new(Code::E0304, message, number.span, here), number, param);
+        let report =
+            meant_in_range(Diagnostic::new(Code::E0304, message, number.span, here), number, param, self.declaration);
         Err(too_long(report, number, param, quark).into())
     }
 
@@ -125,6 +127,7 @@ impl Fitting<'_> {
         match units.split_last() {
             Some((last, [])) => report.help(format!("its unit is {last}")),
             Some((last, others)) => report.help(format!("its unit is {} or {last}", others.join(", "))),
+            None if param.kind == ParameterKind::Sonar => faces(report, number),
             None => report.help("write it without a unit"),
         }
     }

@@ -1,7 +1,7 @@
 //! Writes messages about numbers that are out of range: the text of limits, and the number that the user probably
 //! meant.
 
-use crate::alphabet::{Param, Unit};
+use crate::alphabet::{Declaration, Param, Unit};
 use crate::diagnostic::Diagnostic;
 use crate::syntax::tree::Number;
 
@@ -11,8 +11,13 @@ pub(super) fn limit(value: f64) -> String {
 }
 
 /// Appends help to a message about a number that is out of range, if the number would be in range in degrees instead of
-/// radians, or without its sign.
-pub(super) fn meant_in_range(report: Diagnostic, number: &Number, param: &Param) -> Diagnostic {
+/// radians, or without its sign. The distance of a place that also has a bearing would then be in the opposite direction.
+pub(super) fn meant_in_range(
+    report: Diagnostic,
+    number: &Number,
+    param: &Param,
+    declaration: &Declaration,
+) -> Diagnostic {
     let (digits, own) = (number.digits(), number.unit().or(param.unit.map(|unit| unit.name)).unwrap_or_default());
     let fits = |digits: &str, unit: &str| {
         let (Some((least, most)), Ok(value)) = (param.range, digits.parse::<f64>()) else { return false };
@@ -28,6 +33,10 @@ pub(super) fn meant_in_range(report: Diagnostic, number: &Number, param: &Param)
     match digits.strip_prefix('-').filter(|positive| fits(positive, own)) {
         Some(positive) => {
             let positive = format!("{positive}{}", number.unit().unwrap_or_default());
+            if param.name == "range" && declaration.params.iter().any(|other| other.name == "bearing") {
+                return report
+                    .help(format!("for the opposite direction add 180 to the bearing, and write `{positive}`"));
+            }
             report.fix("write it without the sign: {}", number.span, positive)
         }
         None => report,

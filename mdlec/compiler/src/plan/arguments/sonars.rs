@@ -1,11 +1,14 @@
 //! Writes messages about arguments that are not sonars where a sonar is expected.
 
-use crate::alphabet::{Declaration, ParameterKind};
+use crate::alphabet::{Declaration, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::tree::{Arg, Call};
+use crate::syntax::tree::{Arg, Call, Number};
 
 /// Help text with the directions of the sonars.
 pub(super) const DIRECTIONS: &str = "sonar 0 looks ahead, 4 left, 8 back, 12 right";
+
+/// Angle between two adjacent sonars, in degrees.
+const BETWEEN: f64 = 22.5;
 
 /// Returns help with the two sonars on either side of each direction, for a law that compares two sonars.
 pub(in crate::plan) fn walls(law: &str) -> String {
@@ -27,6 +30,21 @@ pub(super) fn looks(diagnostic: Diagnostic, arg: &Arg) -> Diagnostic {
     };
     let words = format!("for the sonar that looks {} write {{}}", if sonar == "0" { "ahead" } else { name });
     diagnostic.fix(&words, arg.span(), sonar)
+}
+
+/// Appends help to a message about a number with a unit where a sonar is expected. If the number is the direction of a
+/// sonar, the help names this sonar.
+pub(super) fn faces(report: Diagnostic, number: &Number) -> Diagnostic {
+    let unit = number.unit().and_then(Unit::from_name).filter(|unit| unit.kind == ParameterKind::Angle);
+    let Some((unit, Ok(value))) = unit.map(|unit| (unit, number.digits().parse::<f64>())) else {
+        return report.help("write it without a unit");
+    };
+    let sonar = unit.to_si(value).to_degrees().rem_euclid(360.0) / BETWEEN;
+    let nearest = sonar.round();
+    if (sonar - nearest).abs() > 0.01 {
+        return report.help(DIRECTIONS);
+    }
+    report.fix("the sonar in this direction is {}", number.span, format!("{}", nearest as u8 % 16))
 }
 
 /// Reports a call that needs two sonars and has two names, as in `align left right`.

@@ -114,6 +114,8 @@ fn ranges_of_time_are_written_as_sonars() {
         ("{ P (bumper) (Atom (null) align r_7(t) r_9(t)) }", "write `align r_7 r_9`"),
         ("{ P (bumper) (Atom (null) align 7 r_9(t)) }", "write `align 7 r_9`"),
         ("{ P (bumper) (Atom (null) (align r_7 r9(t))) }", "write `align r_7 r9`"),
+        ("{ P (bumper) (Atom (null) align r7(t), r9(t)) }", "write `align r7 r9`"),
+        ("{ P (bumper) (Atom (null) align r_7 = r_9) }", "write `r_7 r_9`"),
         ("{ P (bumper) (align(r_7(t), r_9(t)), null) }", "write `align(r_7, r_9)`"),
         ("{ P (bumper) align r_7(t) r_9(t) (Atom (null) stop) }", "say when it ends: `(Atom (wait 10) align r_7 r_9)`"),
         ("{ P (bumper) align r_7 r_9 }", "say when it ends: `(Atom (wait 10) align r_7 r_9)`"),

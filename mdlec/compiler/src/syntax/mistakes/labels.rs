@@ -1,6 +1,7 @@
 //! Reports mistakes with labels, colons and equals signs.
 
 use super::plan_names::{name_before_plan, not_a_label};
+use super::ranges::is_range;
 use crate::alphabet::ParameterKind;
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
@@ -100,6 +101,14 @@ fn named_arguments_of_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     });
     let values = names.map(|at| site.text(at + 2, at + 2)).collect::<Option<Vec<_>>>()?;
     let last = (first + 3 * values.len()).checked_sub(1).filter(|last| *last > site.at)?;
+    if is_range(site, first) {
+        // An equation between two ranges, as in `align r_7 = r_9`, whose arguments are both sides.
+        let text = site.text(first, last)?.replace('=', " ");
+        let both = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let message = "arguments are given in order, without `=`";
+        let diagnostic = site.about(site.at, message, "not expected here");
+        return Some(diagnostic.fix("write {}", site.span(first, last), both));
+    }
     let diagnostic = site.about(site.at, "arguments have no names: they are given in order", "not expected here");
     Some(diagnostic.fix("write the values alone: {}", site.span(first, last), values.join(" ")))
 }

@@ -12,6 +12,7 @@ pub(super) fn range_of_time(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
     let (first, last) = call(site, range)?;
     let written = site.text(first, last)?.replace("(t)", "");
+    let written = if written.ends_with(')') { written } else { written.replace(',', "") };
     let message = format!("the arguments of `{}` are sonars, not functions of time", site.name_at(first)?);
     let diagnostic = site.about(site.at, message, "not expected here");
     Some(diagnostic.fix("write {}", site.span(first, last), written))
@@ -31,13 +32,14 @@ fn call(site: &Site<'_, '_>, range: usize) -> Option<(usize, usize)> {
         last = match site.kind(last + 1) {
             Some(Tok::Name(_) | Tok::Number(_)) => last + 1,
             Some(Tok::TouchParen) if is_range(site, last) && is_time(site, last + 1) => last + 3,
+            Some(Tok::Comma) if is_range(site, last + 2) => last + 2,
             Some(_) | None => return Some((first, last)),
         };
     }
 }
 
 /// Returns `true` if the token at `at` is the name of a range, such as `r_7` or `r7`.
-fn is_range(site: &Site<'_, '_>, at: usize) -> bool {
+pub(super) fn is_range(site: &Site<'_, '_>, at: usize) -> bool {
     let digits = site.name_at(at).and_then(|name| name.strip_prefix('r'));
     let digits = digits.map(|digits| digits.strip_prefix('_').unwrap_or(digits)).unwrap_or_default();
     !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
