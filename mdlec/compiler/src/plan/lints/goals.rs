@@ -47,7 +47,7 @@ impl Goals<'_, '_> {
     }
 
     fn interrupt(&mut self, interrupt: &Interrupt, fastest: f64, here: &str) {
-        let Some(quark) = self.stuck(&interrupt.condition) else { return };
+        let Some(&(quark, _)) = stucks(self.plan, &interrupt.condition).first() else { return };
         let text = &quark.text;
         let lint = |message, here| Diagnostic::new(Code::W0203, message, interrupt.span, here);
         let needed = PROGRESS / fastest;
@@ -64,20 +64,20 @@ impl Goals<'_, '_> {
             self.found.push(lint(message, &here).help(help));
         }
     }
+}
 
-    /// Returns the first `stuck` in a condition; `None` if there is none.
-    fn stuck(&self, condition: &Condition) -> Option<&Quark> {
-        // The causes that `after` asks for are no operands: their elements have ended before.
-        if let Condition::Quark(id) = condition {
-            return Some(self.plan.quark(*id)).filter(|quark| quark.name == "stuck");
-        }
-        condition.children().iter().find_map(|operand| self.stuck(operand))
+/// Returns every `stuck` in a condition, with its time in nanoseconds.
+pub(super) fn stucks<'p>(plan: &'p Plan, condition: &Condition) -> Vec<(&'p Quark, u64)> {
+    // The causes that `after` asks for are no operands: their elements have ended before.
+    if let Some((quark, nanos)) = condition.lasting() {
+        return Some((plan.quark(quark), nanos)).into_iter().filter(|(quark, _)| quark.name == "stuck").collect();
     }
+    condition.children().iter().flat_map(|operand| stucks(plan, operand)).collect()
 }
 
 /// Returns the maximum speed, in m/s, at which a law comes nearer to its goal: 0 if it has none, and infinity if the
 /// speed is not known.
-fn towards_goal(law: &Quark) -> f64 {
+pub(super) fn towards_goal(law: &Quark) -> f64 {
     let is_drive = law.name == "goAvoid";
     // A `goAvoid` that follows a module has no goal, and does not complete.
     if is_drive && !law.completes || WITHOUT_GOAL.contains(&law.name.as_str()) {

@@ -7,6 +7,7 @@ mod ends;
 mod frames;
 mod goals;
 mod numbers;
+mod restarts;
 mod skipped;
 mod sonars;
 #[cfg(test)]
@@ -30,6 +31,7 @@ pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     ends::check(plan, &mut found);
     frames::check(plan, &mut found);
     goals::check(plan, &mut found);
+    restarts::check(plan, &mut found);
     skipped::check(plan, &mut found);
     sonars::check(plan, &mut found);
     unlimited::check(plan, &mut found);

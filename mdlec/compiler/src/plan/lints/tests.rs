@@ -100,6 +100,25 @@ fn a_stuck_without_time_for_progress() {
 }
 
 #[test]
+fn a_stuck_that_begins_anew_with_each_drive() {
+    assert_judged!(
+        "{ P (stuck 15s)
+  ExecPlan 9 { (Atom (wait 4s) (goAvoid 0 4m)) { Q (bumper OR t > 9) (Atom (null) (goAvoid 90 4m))^2 } }
+  { R (bumper AND NOT stuck 40) ((Atom (stuck 10) (goAvoid 0 4m)))^3 (Atom (null) turn 90) }
+  (Atom (stuck 9 OR wait 5 AND wait 8) (goAvoid 180 4m))
+}"
+    );
+    assert_silent(&[
+        "{ P (stuck 15) ExecPlan inf { (Atom (wait 4) (goAvoid 0 4m)) (Atom (bumper) (goAvoid 90 4m)) } }",
+        "{ P (stuck 15) ExecPlan inf { (Atom (wait 15) (goAvoid 0 4m)) (Atom (wait 14.5) (goAvoid 90 4m)) } }",
+        "{ P (stuck 15) ExecPlan inf { (Atom (wait 4 AND r0 < 2m) (goAvoid 0 4m)) (Atom (null) turn 90) } }",
+        "{ P (stuck 15) ExecPlan inf { (Atom (t == 4 OR rendezvous ada OR way > 1m) (goAvoid 0 4m)) } }",
+        "{ P (stuck 15) ExecPlan inf { (Atom (wait 4) lead 2m 0deg 3m) } }",
+        "{ P (stuck inf OR bumper) ExecPlan inf { (Atom (wait 4) (goAvoid 0 4m)) } }",
+    ]);
+}
+
+#[test]
 fn sonars_that_no_turn_makes_equal() {
     assert_judged!(
         "{ P (bumper)
