@@ -54,6 +54,8 @@ fn a_drive_that_may_never_arrive() {
   { Q (bumper) (Atom (bumper OR null) (goAvoid 90 4m))^2 }
   Leg
   { R (wait 1min) Leg }
+  { S (bumper AND wait 60s) (Atom (null) (goAvoid 0 4m)) (Atom (bumper AND wait 9) (goAvoid 90 4m)) }
+  (Atom (RISING bumper) (goAvoid 0 4m))
 }
 { Leg (Atom (null) (goAvoid 180 4m)) }"
     );
@@ -62,6 +64,8 @@ fn a_drive_that_may_never_arrive() {
         "{ P (bumper OR wait 2min) (Atom (null) (goAvoid 0 4m)) }",
         "{ P (bumper) { Q (t > 60) ((Atom (null) (goAvoid 0 4m)))^2 } (Atom (way > 20) (goAvoid 0 4m)) }",
         "{ P (lowBattery) (Atom (null) (goAvoid 0 4m)) }",
+        "{ P (bumper AND wait 60s OR wait 2min AND way > 5) (Atom (null) (goAvoid 0 4m)) }",
+        "{ P (stuck 30 AND (bumper OR wait 1min)) (Atom (null) (goAvoid 0 4m)) }",
         "{ P (bumper) (Atom (null) (goAvoid(sun module))) }",
     ]);
 }

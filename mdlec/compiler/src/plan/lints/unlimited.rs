@@ -2,12 +2,12 @@
 //! point (W0208).
 
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
+use crate::plan::{Atom, Condition, Node, Plan};
 
 /// Warns about every `goAvoid` that ends only on arrival or contact.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut lint = Unlimited { plan, found };
-    let is_limited = lint.limits(&plan.root.interrupt);
+    let is_limited = lint.limits(&plan.root.interrupt.condition);
     lint.sequence(&plan.root.body, is_limited);
 }
 
@@ -25,12 +25,12 @@ impl<'p> Unlimited<'p, '_> {
                     let law = self.plan.quark(atom.law);
                     // A `goAvoid` that follows a module never arrives, and does not complete.
                     let arrives = law.name == "goAvoid" && law.completes;
-                    if arrives && !is_limited && !self.limits(&atom.interrupt) {
+                    if arrives && !is_limited && !self.limits(&atom.interrupt.condition) {
                         self.warn(atom);
                     }
                 }
                 Node::Scope(scope) => {
-                    let is_limited = is_limited || self.limits(&scope.interrupt);
+                    let is_limited = is_limited || self.limits(&scope.interrupt.condition);
                     self.sequence(&scope.body, is_limited);
                 }
                 Node::Loop(repeated) => self.sequence(&repeated.body, is_limited),
@@ -38,15 +38,18 @@ impl<'p> Unlimited<'p, '_> {
         }
     }
 
-    /// Returns `true` if an interrupt may end a drive whose goal cannot be reached. Contact is ignored, because the law
+    /// Returns `true` if a condition may end a drive whose goal cannot be reached. Contact is ignored, because the law
     /// avoids obstacles.
-    fn limits(&self, interrupt: &Interrupt) -> bool {
-        interrupt.condition.operands().iter().any(|operand| match operand {
+    fn limits(&self, condition: &Condition) -> bool {
+        match condition {
             Condition::Null => false,
             Condition::Quark(id) => self.plan.quark(*id).name != "bumper",
-            Condition::Wait { .. } | Condition::Elapsed { .. } | Condition::Driven { .. } | Condition::Or(_) => true,
-            Condition::And(_) | Condition::Not(_) | Condition::Rising { .. } | Condition::After(_) => true,
-        })
+            Condition::Or(operands) => operands.iter().any(|operand| self.limits(operand)),
+            Condition::And(operands) => operands.iter().all(|operand| self.limits(operand)),
+            Condition::Rising { operand, .. } => self.limits(operand),
+            Condition::Wait { .. } | Condition::Elapsed { .. } | Condition::Driven { .. } => true,
+            Condition::Not(_) | Condition::After(_) => true,
+        }
     }
 
     fn warn(&mut self, atom: &Atom) {
