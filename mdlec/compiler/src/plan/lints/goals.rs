@@ -9,6 +9,8 @@ use crate::plan::{Condition, Interrupt, Node, Plan, Quark, Value};
 const WITHOUT_GOAL: [&str; 9] = ["go", "stop", "rotate", "turn", "advance", "align", "Follow", "slot", "path"];
 /// Progress, in metres, that begins the time of a `stuck` anew, as in `mdle-atoms`.
 const PROGRESS: f64 = 0.1;
+/// Relative error by which a quotient of a distance and a speed may be too small.
+const ROUNDING: f64 = 1e-9;
 /// Distance of a goal, in metres, below which `goAvoid` may complete before it has made this progress.
 const FAR: f64 = 1.0;
 
@@ -54,11 +56,11 @@ impl Goals<'_, '_> {
         if fastest <= 0.0 {
             let help = "`stuck` asks for the progress of a `goAvoid` to a point; a time ends every law: `wait 30s`";
             self.found.push(lint(format!("`{text}` is never true"), here).help(help));
-        } else if quark.args.first().and_then(si).is_some_and(|time| time < needed) {
+        } else if quark.args.first().and_then(si).is_some_and(|time| time <= needed * (1.0 + ROUNDING)) {
             let message = format!("`{text}` is true before the robot can have made progress");
-            // Upwards, so that the time that is shown is enough.
-            let seconds = (needed * 1e3).ceil() / 1e3;
-            let here = format!("at its speed, 10 cm of progress take {seconds} s or more");
+            // Rounded down, so that "more than" is true.
+            let seconds = (needed * (1.0 + ROUNDING) * 1e3).floor() / 1e3;
+            let here = format!("to start and drive 10 cm at its speed takes more than {seconds} s");
             let enough = (10.0 * needed).ceil().max(30.0);
             let help = format!("give it a time in which there is progress, such as `stuck {enough}s`");
             self.found.push(lint(message, &here).help(help));

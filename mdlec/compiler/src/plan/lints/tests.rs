@@ -92,11 +92,13 @@ fn a_stuck_without_time_for_progress() {
   (Atom (stuck 0.5ms OR wait 1min) (goAvoid 0 4m))
   { Q (stuck 0.9) (Atom (wait 5) stop) (Atom (null) (goAvoid 0 4m 10)) }
   (Atom (stuck 30) (goAvoid 0 4m 0.3cm/s))
+  (Atom (stuck 0.5s) (goAvoid 90 4m))
+  (Atom (stuck 2s) (goAvoid 90 4m 5cm/s))
 }"
     );
     assert_silent(&[
         "{ P (bumper) (Atom (stuck 334) (goAvoid 0 4m 0.3cm/s)) }",
-        "{ P (bumper) (Atom (stuck 0.5) (goAvoid 0 4m)) (Atom (stuck 0.1) (goAvoid 0 4m 100)) }",
+        "{ P (bumper) (Atom (stuck 0.501) (goAvoid 0 4m)) (Atom (stuck 0.11) (goAvoid 0 4m 100)) }",
         "{ P (bumper) (Atom (stuck 0.4) (goAvoid 0 18cm)) (Atom (stuck 0.1) lead 2m 0deg 3m) }",
         "{ P (bumper) { Q (stuck 0.6) (Atom (null) (goAvoid 0 4m 10)) (Atom (null) (goAvoid 90 4m 20)) } }",
         "{ P (bumper) (Atom (stuck inf OR wait 9) (goAvoid 0 4m)) }",
