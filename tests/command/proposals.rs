@@ -268,6 +268,31 @@ const PROPOSALS: &[(&str, &str, &str, &str)] = &[
         "plans are not separated",
         "((go(20, 0), bumper)(turn(90), null), bumper)σ_null",
     ),
+    (
+        "{ P (bumper) (Atom (atIsection 1,0,0,0) (go 20 0)) }",
+        "write them together: `atIsection 1000`",
+        "1.0",
+        "{ P (bumper) (Atom (atIsection 1000) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (atIsection 0b1000) (go 20 0)) }",
+        "write `1000`",
+        "is not a unit",
+        "{ P (bumper) (Atom (atIsection 1000) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (atIsection 10x0) (go 20 0)) }",
+        "write both: `(atIsection 1000 OR atIsection 1010)`",
+        "is not a unit",
+        "{ P (bumper) (Atom ((atIsection 1000 OR atIsection 1010)) (go 20 0)) }",
+    ),
+    ("{ P (bumper) (Atom (wait 5s) (align 3-5)) }", "write `3 5`", "-2", "{ P (bumper) (Atom (wait 5s) (align 3 5)) }"),
+    (
+        "{ P (bumper) (Atom (wait 5s) (align 3, 5)) }",
+        "or write them in parentheses that touch the name: `align(3, 5)`",
+        "go(5, 0)",
+        "{ P (bumper) (Atom (wait 5s) align(3, 5)) }",
+    ),
 ];
 
 #[test]

@@ -4,6 +4,7 @@
 use super::arithmetic::{arithmetic, computed, foreign_unit, sum_of_units, word};
 use super::number::split;
 use super::source::{FileText, TextRange};
+use super::touching::touching;
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic, Span};
 
@@ -227,6 +228,9 @@ pub(super) fn text(source: FileText<'_>, place: TextRange) -> Diagnostic {
 pub(super) fn number(source: FileText<'_>, number: &str, tail: &str, place: TextRange) -> Diagnostic {
     let span = source.span(TextRange::new(place.end - tail.len(), place.end));
     let whole = source.span(place);
+    if let Some(diagnostic) = touching(source, number, tail, place) {
+        return diagnostic;
+    }
     if tail.starts_with('.') {
         return dot(number, tail, span, whole);
     }

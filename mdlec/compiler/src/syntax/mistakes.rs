@@ -2,6 +2,7 @@
 
 mod atoms;
 mod calls;
+mod commas;
 mod conditions;
 mod files;
 mod groups;
@@ -26,9 +27,10 @@ use ranges::range_of_time;
 
 /// Returns the message about the first common mistake that is found at the site.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 22] = [
+    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 23] = [
         head_of_group,
         square_brackets,
+        commas::bits,
         decimal_comma,
         at_file_level,
         element_touches,
@@ -240,12 +242,7 @@ fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
         }
         Tok::RParen if is_law() => {
             let message = "a comma separates arguments only in parentheses that touch the name";
-            let words = "remove the comma: arguments are separated by spaces, as in `go 5 0`";
-            Some(
-                diagnostic(message)
-                    .fix(words, span, "")
-                    .help("or write them in parentheses that touch the name: `go(5, 0)`"),
-            )
+            Some(commas::in_law(site, diagnostic(message)))
         }
         _ if site.in_atom()
             && site.before(1) == Some(Tok::RParen)

@@ -28,6 +28,7 @@ mod source;
 #[cfg(test)]
 mod tests;
 mod token;
+mod touching;
 pub mod tree;
 mod waiting;
 
@@ -56,6 +57,7 @@ pub use format::format;
 pub(crate) use lexical::nearest_unit;
 pub use one_line::one_line;
 pub use single::{is_law, operands};
+pub(crate) use touching::BITS;
 
 /// Arena that contains the nodes of a tree.
 pub type Arena = bumpalo::Bump;

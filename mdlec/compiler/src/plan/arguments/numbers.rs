@@ -7,6 +7,7 @@ use super::{Fitted, Fitting, Value};
 use crate::alphabet::{Origin, Param, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::Decimal;
+use crate::syntax::BITS;
 use crate::syntax::tree::Number;
 
 /// Largest whole number up to which `f64` represents every whole number exactly.
@@ -161,7 +162,7 @@ pub(super) fn bits(number: &Number, length: u32) -> Fitted {
             None => format!("these are {} digits", digits.len()),
         };
         let report = Diagnostic::new(Code::E0302, message, number.span, here);
-        return Err(report.help("the bits are front, left, back, right; 1 where an obstacle is near: `0100`").into());
+        return Err(report.help(BITS).into());
     }
     let bits = digits.iter().map(|digit| *digit == b'1').collect();
     Ok((Value::Bits(bits), number.digits().to_owned()))

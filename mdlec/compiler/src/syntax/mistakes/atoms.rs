@@ -1,5 +1,6 @@
 //! Reports mistakes in atoms, where a condition or a law is missing or in the wrong place.
 
+use super::commas;
 use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
@@ -147,9 +148,7 @@ pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens need no other hint")]
     Some(match site.found()? {
         Tok::Caret => diagnostic.help("a power follows the atom's parenthesis: `(Atom (wait 5) stop)^3`"),
-        Tok::Comma => diagnostic
-            .fix("remove the comma: arguments are separated by spaces, as in `go 5 0`", site.span(site.at, site.at), "")
-            .help("or write them in parentheses that touch the name: `go(5, 0)`"),
+        Tok::Comma => commas::in_law(site, diagnostic),
         _ => {
             let law = second_law(site).unwrap_or_else(|| "(Atom (bumper) stop)".to_owned());
             let words = "an atom is one condition and one law; a second law needs an atom of its own";

@@ -118,6 +118,8 @@ fn conditions() {
         &[
             "{ A (x = 3) (Atom () stop) (Atom (OR bumper) stop) (Atom (bumper OR) stop) (Atom (NOT NOT bumper) stop) }",
             "{ A (Atom (0.5 < r 3) stop) (Atom (r 3 < 0.5 m) stop) (Atom (after 5) stop) }",
+            "{ A (Atom (atIsection 1,0,0,0 OR wait 5) stop) (stop, atIsection 1, 0, 0, 0) (Atom (atIsection 1,0,0) stop) }",
+            "{ A (Atom (b) align 3, 5) (Atom (b) (goAvoid 90, 4m, 20)) (Atom (b) (go 5, 0 = 1)) }",
             "{ A ((bumper OR) AND wait 5) (Atom (bumper) stop) }",
         ],
     );
@@ -161,6 +163,8 @@ fn characters_and_numbers() {
             "{ A (Atom (wait .5) stop) (Atom (wait 5.) stop) (Atom (wait 5-3) stop) (Atom (wait 5.5.5) stop) }",
             "{ A (Atom (b) (go 20 cm/s 0.36rad/s2)) (Atom (b) (rotate 90°)) (Atom (b) (rotate − 90)) }",
             "{ A B\n 3Patrol\n @ = C }",
+            "{ A (Atom (atIsection 0b1000) stop) (Atom (NOT atIsection 10x0) stop) (Atom (atIsection(1xx0)) stop) }",
+            "{ A (Atom (atIsection 0b10) stop) (Atom (b) align 3-5) (Atom (b) (align(11-13))) (Atom (b) (align 3-50)) }",
             "{ A B \\alpha \\Gamma “x” @@@ }",
             "{ A (Atom\\; (r_{7}(t) == r_{ 9 }(t))\\, align r_{7} r_{10}) }",
         ],
