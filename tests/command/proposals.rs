@@ -293,6 +293,18 @@ const PROPOSALS: &[(&str, &str, &str, &str)] = &[
         "go(5, 0)",
         "{ P (bumper) (Atom (wait 5s) align(3, 5)) }",
     ),
+    (
+        "{ P (bumper) (Atom (stuck > 30s) (goAvoid 0 4m)) }",
+        "the time is its argument: `stuck 30s`",
+        "NOT stuck",
+        "{ P (bumper) (Atom (stuck 30s) (goAvoid 0 4m)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (stuck -5s) (goAvoid 0 4m)) }",
+        "write it without the sign: `5s`",
+        "from 0",
+        "{ P (bumper) (Atom (stuck 5s) (goAvoid 0 4m)) }",
+    ),
 ];
 
 #[test]

@@ -2,6 +2,7 @@
 //! path since the scope was entered (docs/src/reference/semantics.md, 2.4).
 
 use super::arguments::{Fitted, value};
+use super::compared_timer::compared_timer;
 use super::parameters::{DefinitionNames, Parameter};
 use super::quarks::ResolvedQuarks;
 use super::{Compared, Comparison, Condition, Operator, Quark, QuarkId, Value};
@@ -58,6 +59,9 @@ pub(super) fn resolve(
     quarks: &mut ResolvedQuarks<'_>,
     names: DefinitionNames<'_, '_>,
 ) -> Resolved<Condition> {
+    if let Some(found) = compared_timer(written, span, quarks) {
+        return Err(vec![found]);
+    }
     let signal = signal(written.left, quarks, names);
     if let (Ok(_), Operand::Signal(call)) = (&signal, &written.right)
         && let Some(found) = like_parameter(call, quarks, names)

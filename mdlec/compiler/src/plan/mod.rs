@@ -5,6 +5,7 @@
 
 mod angle;
 mod arguments;
+mod compared_timer;
 mod comparisons;
 mod condition;
 mod definitions;

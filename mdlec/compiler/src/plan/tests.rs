@@ -112,8 +112,7 @@ fn units_of_arguments() {
   (Atom (wait 20cm) go 20deg 0)
   (Atom (wait 5) rotate 90cm/s)
   (Atom (wait 5) align 7s 9)
-  (Atom (wait 5) align 67.5deg -2.748893571891069rad)
-  (Atom (wait 5) align 60deg 9)
+  (Atom (wait 5) align 67.5deg -2.748893571891069rad) (Atom (wait 5) align 60deg 9)
   (Atom (wait 5) goAvoid 4m 0)
   (Atom (wait 5) goAvoid 4m 90deg 20)
   (Atom (wait 5) goAvoid 4s 3s)
@@ -128,7 +127,7 @@ fn ranges_of_arguments() {
         "{ P
   (Atom (wait -1) align 7 16)
   (Atom (wait 1e11) go 1e999 0)
-  (Atom (stuck 1e11) goAvoid 0 4)
+  (Atom (stuck 1e11 OR stuck -5) goAvoid 0 4)
 }"
     );
 }
@@ -255,8 +254,8 @@ fn signals_are_compared_in_their_units() {
 fn comparisons_that_make_no_sense() {
     assert_judged!(
         "{ P (r17 < 1)
-  (Atom (bumper > 1) stop)
-  (Atom (q > 1) stop)
+  (Atom (bumper > 1 OR stuck > 30s OR stuck >= 0.50min AND wait > 5) stop)
+  (Atom (stuck < 30s OR stuck 5 > 3 OR stuck > 3m OR wait > x OR stuck > 0 OR q > 1) stop)
   (Atom (x > 90deg) stop)
   (Atom (x > theta) stop)
   (Atom (x(3) > 1) stop)

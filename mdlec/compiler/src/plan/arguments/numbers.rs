@@ -1,7 +1,7 @@
 //! Converts numbers in arguments, checks their units and ranges, and reports errors in them.
 
 use super::examples::example;
-use super::ranges::{limit, meant_in_range};
+use super::ranges::{allowed, meant_in_range};
 use super::sonars::{DIRECTIONS, faces};
 use super::{Fitted, Fitting, Value};
 use crate::alphabet::{Origin, Param, ParameterKind, Unit};
@@ -88,14 +88,11 @@ impl Fitting<'_> {
             None | Some(_) => format!("`{}` is {value}{unit}", param.name),
         };
         if self.declaration.origin == Origin::Target {
-            let message = format!(
-                "`{}` cannot do this: `{quark}` takes `{}` from {least} to {most}{unit}",
-                self.robot, param.name
-            );
+            let message = format!("`{}` cannot do this: `{quark}` takes {}", self.robot, allowed(param, least, most));
             let report = Diagnostic::new(Code::E0402, message, number.span, here);
             return Err(meant_in_range(report, number, param, self.declaration).into());
         }
-        let message = format!("`{quark}` takes `{}` from {} to {}{unit}", param.name, limit(least), limit(most));
+        let message = format!("`{quark}` takes {}", allowed(param, least, most));
         let report =
             meant_in_range(Diagnostic::new(Code::E0304, message, number.span, here), number, param, self.declaration);
         Err(too_long(report, number, param, quark).into())

@@ -10,8 +10,19 @@ pub(super) fn limit(value: f64) -> String {
     if value.abs() >= 1e7 { format!("{value:e}") } else { value.to_string() }
 }
 
+/// Returns the text of a parameter's name and range. A range whose lower limit is excluded begins above this limit.
+pub(super) fn allowed(param: &Param, least: f64, most: f64) -> String {
+    let unit = param.unit.map(|unit| format!(" {}", unit.name)).unwrap_or_default();
+    let (name, least_text, most) = (&param.name, limit(least), limit(most));
+    match param.except == Some(least) {
+        true => format!("`{name}` of more than {least_text} and at most {most}{unit}"),
+        false => format!("`{name}` from {least_text} to {most}{unit}"),
+    }
+}
+
 /// Appends help to a message about a number that is out of range, if the number would be in range in degrees instead of
-/// radians, or without its sign. The distance of a place that also has a bearing would then be in the opposite direction.
+/// radians, or without its sign. Without it, the distance of a place that also has a bearing would be in the opposite
+/// direction.
 pub(super) fn meant_in_range(
     report: Diagnostic,
     number: &Number,
