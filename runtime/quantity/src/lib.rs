@@ -1,16 +1,18 @@
 //! Reads and formats quantities for people. Reads the values of options, which are a number alone or a number with a
 //! unit as in a plan. Formats measured values in the words of a plan. Also suggests known names that are similar to an
-//! unknown name.
+//! unknown name, and explains mistakes in TOML files.
 
 mod measured;
 mod near;
 mod rounded;
+mod toml_keys;
 
 use std::time::Duration;
 
 pub use measured::{cause_text, file_line, operand_words};
 pub use near::{did_you_mean, nearest};
 pub use rounded::{Clocked, rounded};
+pub use toml_keys::{TomlKeys, TomlMistake};
 
 /// A kind of quantity that an option can have as its value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

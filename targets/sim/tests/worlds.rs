@@ -144,7 +144,8 @@ fn faults_have_their_place() {
     room.toml:1:15: NaN is no coordinate: expected a number, at most 1000 km
     room.toml:1:21: inf is no coordinate: expected a number, at most 1000 km
     room.toml:1:9: `start`: invalid type: sequence, expected a table
-    room.toml:1:8: `wall`: invalid type: integer `3`, expected a sequence
+    room.toml:1:8: `wall` cannot have this value
+    help: write `[[wall]]`, and its keys and values in the lines below
     room.toml:1:8: `goal`: missing field `max`
     room.toml:1:30: a goal without an inside: it would reach from (0, 0) to (0, 1)
     room.toml:1:8: a goal's `heading` needs a `tolerance` and the other way round, as in `heading = 90, tolerance = 15`

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_host::Quantity;
+use mdle_quantity::{TomlKeys, TomlMistake};
 use mdle_runtime::Printable;
 use mdle_sim::Body;
 use serde::Deserialize;
@@ -15,6 +16,10 @@ use crate::robot_name::{FORM, is_robot_name};
 
 /// Maximum size of a scenario file, in bytes.
 pub(super) const LARGEST: u64 = 4_000_000;
+
+/// Keys of a scenario file, by the kind of their values.
+const KEYS: TomlKeys =
+    TomlKeys { numbers: &["loss", "duplication"], lists: &[], flags: &[], tables: &["robot", "sent-plan"] };
 
 /// A value with its place in the file.
 pub(super) type At<T> = Spanned<T>;
@@ -215,6 +220,10 @@ fn unquoted(place: Option<Range<usize>>, message: &str, text: &str) -> Option<Sc
 /// name.
 fn refused(error: &toml::de::Error, text: &str) -> ScenarioError {
     let place = error.span();
+    let mistake = place.clone().and_then(|place| KEYS.mistake(text, place.start, error.message()));
+    if let Some(TomlMistake { message, help }) = mistake {
+        return ScenarioError { place, message, help };
+    }
     let message = error.message().replace('\n', "; ").replace("expected u64", "expected a whole number");
     let message = message.replace("missing field", "there has to be a key");
     if let Some(error) = unquoted(place.clone(), &message, text) {
@@ -248,6 +257,9 @@ mod tests {
                 robot("a") + "strat = \"0,0,0\"\n",
                 "wrold = \"room\"\n".to_owned() + &robot("a"),
                 "[link]\nlos = 0.1\n".to_owned() + &robot("a"),
+                "[link]\nloss = 0,1\n".to_owned() + &robot("a"),
+                robot("a").replace("[[robot]]", "[robot]"),
+                robot("a") + "seed = 1\nseed = 2\n",
                 "[[robot]]\nname = \"a\"\nfile = \"a.mdle\"\n".to_owned(),
                 "seed = \"many\"\n".to_owned() + &robot("a"),
                 "timeout = 20\n".to_owned() + &robot("a"),

@@ -41,7 +41,11 @@ pub(super) fn world(text: Option<&At<String>>, files: &InputFiles) -> Result<(Wo
             World::parse(&shown, &text)
         }
     };
-    let world = world.map_err(|error| refused(error.to_string()))?;
+    let world = world.map_err(|error| {
+        let message = error.to_string();
+        let (message, help) = message.split_once("\nhelp: ").unwrap_or((&message, ""));
+        refused(message.to_owned()).help(help)
+    })?;
     if !world.things.is_empty() {
         return Err(refused("a world with things that move is for one robot".to_owned()).help("leave them out"));
     }

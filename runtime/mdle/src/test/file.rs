@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use mdle_compiler::alphabet::did_you_mean;
+use mdle_quantity::{TomlKeys, TomlMistake};
 use mdle_runtime::Printable;
 use serde::{Deserialize, Serialize};
 use toml::Spanned;
@@ -14,6 +15,9 @@ pub(super) const ENDING: &str = ".test.toml";
 const COUNT: &str = "a whole number from 0 on";
 /// Maximum size of a test file, in bytes.
 const LARGEST: u64 = 4_000_000;
+
+/// Keys of a test file, by the kind of their values.
+const KEYS: TomlKeys = TomlKeys { numbers: &["t", "way", "heading"], lists: &[], flags: &[], tables: &["test"] };
 
 /// A value with its place in the file.
 pub(super) type At<T> = Spanned<T>;
@@ -194,7 +198,7 @@ pub(super) fn text(path: &Path) -> Result<String, TestFileError> {
 /// # Errors
 /// Fails if the text is not TOML, has unknown keys or values of the wrong type, or two tests of the same name.
 pub(super) fn read(text: &str) -> Result<TestFile, TestFileError> {
-    let file: TestFile = toml::from_str(text).map_err(|error| refused(&error))?;
+    let file: TestFile = toml::from_str(text).map_err(|error| refused(&error, text))?;
     for (number, test) in file.test.iter().enumerate() {
         let name = test.name.get_ref();
         if name.trim().is_empty() {
@@ -215,8 +219,12 @@ pub(super) fn read(text: &str) -> Result<TestFile, TestFileError> {
 
 /// Returns the error for text that the TOML parser refuses. For an unknown key, the error proposes the most similar
 /// name.
-fn refused(error: &toml::de::Error) -> TestFileError {
+fn refused(error: &toml::de::Error, text: &str) -> TestFileError {
     let place = error.span();
+    let mistake = place.clone().and_then(|place| KEYS.mistake(text, place.start, error.message()));
+    if let Some(TomlMistake { message, help }) = mistake {
+        return TestFileError { place, message, help };
+    }
     let words = [("a sequence", "a list"), ("map", "a table"), ("u64", COUNT), ("u8", COUNT)];
     let message = error.message().replace('\n', "; ");
     let message = words.iter().fold(message, |message, (type_name, word)| match message.starts_with("invalid ") {
