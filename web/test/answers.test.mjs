@@ -59,7 +59,7 @@ test("a setup that cannot be names its field", () => {
   const refused = (setup) => ask({ ask: "begin", text: dock, world: office, ...setup }).error;
   assert.match(refused({ world: "[[wall]]\npoints = 7" }), /^world:2:/);
   assert.match(refused({ start: "1,2" }), /^start: expected x,y,heading/);
-  assert.match(refused({ start: "100,100,0" }), /^start: that is off the floor/);
+  assert.match(refused({ start: "100,100,0" }), /^start: the robot would stand outside the walls/);
   assert.match(refused({ start_noise: "0.1,5" }), /^start noise: it needs a seed/);
   assert.match(refused({ body: "fish" }), /^body: expected/);
   assert.match(refused({ without: "wings" }), /^without: "wings"/);

@@ -476,7 +476,7 @@ test("a plan that an edit leaves alone is not run in place of the one before", (
 test("a field that is refused is marked, with the reason", () => using(async (tab) => {
   const refusal = tab.locator("#refusal");
   for (const [name, bad, reason] of [
-    ["seed", "x", /^seed: expected a whole number/], ["limit", "0", /^time limit: expected/], ["start", "100,100,0", /^start: that is off the floor/],
+    ["seed", "x", /^seed: expected a whole number/], ["limit", "0", /^time limit: expected/], ["start", "100,100,0", /^start: the robot would stand outside the walls/],
     ["noise", "0.1,5", /^start noise: it needs a seed/], ["without", "wings", /^without: "wings"/], ["battery", "101", /^battery: expected/], ["goal", "1", /^goal: expected/],
   ]) {
     const field = tab.locator(`#${name}`);
