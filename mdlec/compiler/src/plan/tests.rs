@@ -112,7 +112,7 @@ fn units_of_arguments() {
   (Atom (wait 20cm) go 20deg 0)
   (Atom (wait 5) rotate 90cm/s)
   (Atom (wait 5) align 7s 9)
-  (Atom (wait 5) align 67.5deg -2.748893571891069rad) (Atom (wait 5) align 60deg 9)
+  (Atom (wait 5) align 67.5deg -2.748893571891069rad) (Atom (wait 5) align 60deg 359.9deg)
   (Atom (wait 5) goAvoid 4m 0)
   (Atom (wait 5) goAvoid 4m 90deg 20)
   (Atom (wait 5) goAvoid 4s 3s)

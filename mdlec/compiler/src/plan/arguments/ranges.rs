@@ -21,8 +21,8 @@ pub(super) fn allowed(param: &Param, least: f64, most: f64) -> String {
 }
 
 /// Appends help to a message about a number that is out of range, if the number would be in range in degrees instead of
-/// radians, or without its sign. Without it, the distance of a place that also has a bearing would be in the opposite
-/// direction.
+/// radians, or without its sign. A range without its sign would lead in the opposite direction, so the help for a range
+/// that belongs to a bearing also changes the bearing.
 pub(super) fn meant_in_range(
     report: Diagnostic,
     number: &Number,

@@ -1,5 +1,7 @@
 //! Writes messages about arguments that are not sonars where a sonar is expected.
 
+use mdle_runtime::{Radians, SONARS, SonarId};
+
 use crate::alphabet::{Declaration, ParameterKind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Number};
@@ -7,8 +9,8 @@ use crate::syntax::tree::{Arg, Call, Number};
 /// Help text with the directions of the sonars.
 pub(super) const DIRECTIONS: &str = "sonar 0 looks ahead, 4 left, 8 back, 12 right";
 
-/// Angle between two adjacent sonars, in degrees.
-const BETWEEN: f64 = 22.5;
+/// Maximum angle between a direction and the axis of the sonar that is meant by it.
+const EXACT: Radians = Radians::from_degrees(0.2);
 
 /// Returns help with the two sonars on either side of each direction, for a law that compares two sonars.
 pub(in crate::plan) fn walls(law: &str) -> String {
@@ -39,12 +41,11 @@ pub(super) fn faces(report: Diagnostic, number: &Number) -> Diagnostic {
     let Some((unit, Ok(value))) = unit.map(|unit| (unit, number.digits().parse::<f64>())) else {
         return report.help("write it without a unit");
     };
-    let sonar = unit.to_si(value).to_degrees().rem_euclid(360.0) / BETWEEN;
-    let nearest = sonar.round();
-    if (sonar - nearest).abs() > 0.01 {
-        return report.help(DIRECTIONS);
+    let faces = |sonar: &SonarId| Radians(unit.to_si(value) - sonar.bearing().0).wrapped().0.abs() <= EXACT.0;
+    match (0..SONARS as u8).map(SonarId::new).find(faces) {
+        Some(sonar) => report.fix("the sonar in this direction is {}", number.span, sonar.number().to_string()),
+        None => report.help(DIRECTIONS),
     }
-    report.fix("the sonar in this direction is {}", number.span, format!("{}", nearest as u8 % 16))
 }
 
 /// Reports a call that needs two sonars and has two names, as in `align left right`.
