@@ -5,8 +5,8 @@ use super::goals::{stucks, towards_goal};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Condition, Interrupt, Node, Plan, Quark, QuarkId};
 
-/// Minimum time, in nanoseconds, by which a drive has to end sooner. Within one turn the `stuck` of the outer scope
-/// would fire first, and turns are shorter than this.
+/// Minimum time, in nanoseconds, by which a drive has to end sooner. If both times were over in the same turn, the
+/// `stuck` of the outer scope would fire first. With a longer period of turns than this, it may still do so.
 const TURN: u64 = 1_000_000_000;
 
 /// Warns about every `stuck` whose time is longer than that of every drive in its scope.
@@ -96,7 +96,7 @@ fn warning(stuck: &Quark, interrupt: Span, by: &Quark, place: Span) -> Diagnosti
         let help = format!("remove `{stuck}`, or give it less time than `{by}`");
         return lint(format!("`{by}` fires sooner")).help(help);
     }
-    lint("each new `goAvoid` in here begins its time anew".to_owned())
+    lint(format!("each new `goAvoid` in this scope begins the time of `{stuck}` anew"))
         .also(place, format!("`{by}` ends a `goAvoid` sooner"))
-        .help("for a limit of all of them together write a timer, such as `wait 2min`")
+        .help("to limit all of them together, write a timer, such as `wait 2min`")
 }
