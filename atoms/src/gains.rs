@@ -77,9 +77,9 @@ pub(crate) struct Gains {
     /// often with the weights of a Scout, and ideal robots touched boxes.
     pub(crate) evidence: Evidence,
     /// `goAvoid`: factors of the costs of cells on the map. A Scout passes a doorway 15 cm wider than itself in cells
-    /// of the classes 1 to 3. With the factors of the other bodies, such a doorway in a wall 12 cm thick costs more
-    /// than several metres elsewhere, and Scouts drove along the wall instead. ATRV-minis touched furniture more often
-    /// with the factors of a Scout.
+    /// of the classes 1 to 3, and an ATRV-mini passes a doorway of 0.9 m in cells of the class 4. With the factors of
+    /// an ideal robot, such a doorway in a wall 10 cm thick costs more than several metres elsewhere, and robots drove
+    /// along the wall instead. ATRV-minis touched furniture more often with the factors of a Scout.
     pub(crate) factors: Factors,
     /// `goAvoid`: cost of a movement, in metres, per metre by which it brings the body nearer than 8 cm to an
     /// obstacle that is too near to be measured. On the map, such an obstacle may be 5 cm further away than it is. With
@@ -92,9 +92,8 @@ pub(crate) struct Gains {
     pub(crate) winds_most: f64,
 }
 
-/// Weights of the evidence, and factors of costs, of all bodies except a Scout.
+/// Weights of the evidence of all bodies except a Scout.
 const EVIDENCE: Evidence = Evidence { hit: 4, below: 2, miss: 2, edges: f64::INFINITY };
-const FACTORS: Factors = [0, 10, 6, 5, 4, 4, 2, 1];
 
 /// Gains of a body whose sonars all ping in every turn.
 const RING: Gains = Gains {
@@ -111,7 +110,7 @@ const RING: Gains = Gains {
     confirms_memory: false,
     room: 0.04,
     evidence: EVIDENCE,
-    factors: FACTORS,
+    factors: [0, 10, 6, 5, 4, 4, 2, 1],
     too_near_costs: 3.0,
     winds_most: f64::INFINITY,
 };
@@ -147,7 +146,7 @@ const ATRV: Gains = Gains {
     beyond: 0.3,
     confirms_memory: true,
     evidence: EVIDENCE,
-    factors: FACTORS,
+    factors: [0, 6, 4, 3, 2, 2, 2, 1],
     too_near_costs: 6.0,
     winds_most: 1.5 * core::f64::consts::PI,
     ..SCOUT

@@ -360,6 +360,10 @@ fn place(Cell { x, y }: Cell) -> (usize, usize, u8) {
 
 #[cfg(test)]
 impl Map {
+    /// A map around a robot at the origin, all cells of which pings have passed.
+    pub(crate) const FREE: Self =
+        Self { evidence: [[0; BYTES]; ROWS], corner: Cell { x: -CELLS / 2, y: -CELLS / 2 }, ..Self::EMPTY };
+
     /// Marks as occupied every cell along a line between two positions, in metres. The robot is at the origin.
     pub(crate) fn occupy(&mut self, from: (f64, f64), to: (f64, f64)) {
         self.move_to(Pose::ORIGIN);

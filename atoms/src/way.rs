@@ -237,6 +237,20 @@ mod tests {
         assert!(!next.is_straight, "{next:?}");
     }
 
+    /// Sonars hear only the parts of the wall that face them, here 15 cm beside a doorway. On the map, the doorway is
+    /// 0.8 m wide.
+    #[test]
+    fn a_doorway_is_shorter_than_the_way_round_the_part_of_its_wall_that_is_heard() {
+        let mut map = Map::FREE;
+        for (x, side) in [0.4, 0.45, 0.5].into_iter().flat_map(|x| [(x, 1.0), (x, -1.0)]) {
+            map.occupy((x, 0.125 + 0.4 * side), (x, 0.125 + 0.55 * side));
+        }
+        let goal = Pose { x: Meters(2.6), ..Pose::ORIGIN };
+        let atrv = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+        let next = way(&map, Pose::ORIGIN, &Ahead { from: Meters(2.6), ..ahead(goal, None) }, &atrv).expect("a way");
+        assert!(next.x > 0.25 && (next.y - 0.125).abs() < 0.06, "{next:?}");
+    }
+
     #[test]
     fn a_way_is_kept_until_another_is_much_shorter() {
         // A post straight ahead can be passed equally well on both sides.
