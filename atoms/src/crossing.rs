@@ -50,6 +50,10 @@ const OF_WALL: f64 = 0.5;
 /// is uncertain by several degrees. A robot that stops later may already be where the person walks.
 const SOON: f64 = 8.0;
 
+/// Time, in seconds, before a person may reach the robot, at which the robot stops in any case: the way of the person
+/// need not cross the robot's way at a right angle.
+const STOPS: f64 = 3.5;
+
 /// An echo: its time in seconds, and its distance along the way and to the left of it, in metres.
 struct Echo {
     at: f64,
@@ -162,7 +166,7 @@ fn comes<Y: DiffDrive + SonarRing>(
     let is_ahead = match (is_far, waits) {
         (true, true) => new.along > -CLEAR,
         (true, false) => new.along > CLEAR / 2.0,
-        (false, _) => new.along > apart,
+        (false, _) => new.along > PERSON,
     };
     if !(is_ahead && new.across.abs() > ASIDE) {
         return None;
@@ -178,7 +182,10 @@ fn comes<Y: DiffDrive + SonarRing>(
     let seconds = new.across.abs() / mean;
     let along = new.along_turned(between(y, sonar, echoes[0].0, echoes[0].1));
     let is_before = !waits && along + apart < speed * (seconds - apart / mean);
-    let meets = along < apart + PERSON + speed * seconds && seconds < SOON && !is_before;
+    let own = if waits { 0.0 } else { speed };
+    let range = libm::hypot(new.along, new.across);
+    let is_soon = range - apart < STOPS * (mean + own * new.along / range);
+    let meets = is_soon || along < apart + PERSON + speed * seconds && seconds < SOON && !is_before;
     let is_nearer = mean * (new.at - old.at) >= NEARER;
     let back = if is_far && seconds < BACK { (apart + CLEAR - along).max(0.0) } else { 0.0 };
     let crossing = Crossing { passed: seconds + apart / mean, back };

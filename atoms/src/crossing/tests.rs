@@ -120,7 +120,7 @@ fn the_robot_backs_off_from_where_a_person_would_meet_it() {
 #[test]
 fn a_person_who_comes_abreast_is_not_waited_for() {
     assert_eq!(person(4, [2.1, 1.7, 1.2]), None);
-    assert_eq!(person(3, [1.8, 1.4, 0.9]), None, "a person as near as the wall of a hallway");
+    assert_eq!(person(3, [1.3, 0.9, 0.4]), None, "a person as near as the wall of a hallway");
 }
 
 #[test]
@@ -150,4 +150,19 @@ fn echoes_that_may_come_from_the_wall_ahead_are_nobody() {
         crosses(&y, &BeforeMissed::default(), y.pose, DRIVES).is_some()
     };
     assert!(!waits(Some(1.2)) && waits(Some(1.6)) && waits(None));
+}
+
+/// Sonar 2 faces 45° to the left. The person comes at 0.5 m/s, and the robot drives towards the person's way.
+#[test]
+fn a_person_who_comes_from_ahead_and_from_the_side_is_waited_for() {
+    let waits = |ranges| person(2, ranges).is_some();
+    assert!(waits([3.4, 2.9, 2.4]), "3.4 s before they meet");
+    assert!(!waits([3.8, 3.3, 2.8]), "4.0 s before they meet");
+}
+
+/// The person is 39 cm ahead of the robot's centre, and 92 cm to its left.
+#[test]
+fn a_person_almost_abreast_is_waited_for() {
+    assert!(waits([1.8, 1.3, 0.8]));
+    assert_eq!(person(4, [1.8, 1.3, 0.8]), None, "abreast");
 }

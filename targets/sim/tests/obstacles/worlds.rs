@@ -109,23 +109,30 @@ pub(crate) fn hall(_: Body, seed: u64) -> Crossing {
 /// Returns an open floor with a person who walks straight across the way, 3 m from the origin, at 0.5 to 1.2 m/s. The
 /// person is on the way when a robot that does not react is between 1 m before the person and 1.5 m beyond.
 pub(crate) fn lane(_: Body, seed: u64) -> Crossing {
-    past_a_person(seed, "", |passed| 7.0 + passed.max(0.0))
+    past_a_person(seed, "", 0.0, |passed| 7.0 + passed.max(0.0))
 }
 
 /// Returns the floor of [`lane`], with a rough wall across the way behind the person, and the goal before this wall.
 pub(crate) fn corridor(_: Body, seed: u64) -> Crossing {
-    past_a_person(seed, "[[wall]]\nrough = 1\npoints = [[4.6, -9], [4.6, 9]]\n", |_| 3.9)
+    past_a_person(seed, "[[wall]]\nrough = 1\npoints = [[4.6, -9], [4.6, 9]]\n", 0.0, |_| 3.9)
+}
+
+/// Returns the floor of [`lane`] with a person whose way crosses that of the robot at 45°, against it.
+pub(crate) fn slanting(_: Body, seed: u64) -> Crossing {
+    past_a_person(seed, "", 1.0, |passed| 7.0 + passed.max(0.0))
 }
 
 /// Returns the floor of [`lane`] with these walls and a goal at this distance along the first axis. The distance
-/// depends on where, in metres beyond the person, a robot would be that does not react.
-fn past_a_person(seed: u64, walls: &str, far_to: impl Fn(f64) -> f64) -> Crossing {
+/// depends on where, in metres beyond the person, a robot would be that does not react. For each metre across the
+/// robot's way, the person walks `slant` metres against it.
+fn past_a_person(seed: u64, walls: &str, slant: f64, far_to: impl Fn(f64) -> f64) -> Crossing {
     let mut chance = Chance::new(seed ^ 0x1a);
     let speed = [0.5, 0.8, 1.0, 1.2][(seed / 2 % 4) as usize];
     let (far, passed) = (7.5, 0.25 + chance.within(1.25));
     let from = if seed.is_multiple_of(2) { far } else { -far };
-    let (x, y, heading) = (3.0 + passed - 0.2 * far / speed, chance.within(0.1), chance.within(5.0));
-    let schedule = format!("[[0, 3, {from}], [{}, 3, {}]]", 2.0 * far / speed, -from);
+    let (half, along) = (far * libm::hypot(1.0, slant) / speed, far * slant);
+    let (x, y, heading) = (3.0 + passed - 0.2 * half, chance.within(0.1), chance.within(5.0));
+    let schedule = format!("[[0, {}, {from}], [{}, {}, {}]]", 3.0 + along, 2.0 * half, 3.0 - along, -from);
     let start = format!("start = {{ x = {x}, y = {y}, heading = {heading} }}\n");
     let text = format!("{start}{walls}[[disc]]\nradius = 0.25\nschedule = {schedule}");
     let world = World::parse("a test's world", &text).expect("a good world");
