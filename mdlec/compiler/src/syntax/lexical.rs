@@ -35,6 +35,9 @@ fn characters_help(diagnostic: Diagnostic, source: FileText<'_>, found: &str, pl
     }
     match found {
         "&&" | "&" | "∧" => operator(diagnostic, "AND"),
+        "|" if is_magnitude(source, place) => {
+            diagnostic.help("nothing is computed in a plan; two ranges are compared with `==`: `r7 == r9`")
+        }
         "||" | "|" | "∨" => operator(diagnostic, "OR"),
         "!" if next == Some('=') => diagnostic.help("write `NOT` before an equality: `NOT r 3 == r 5`"),
         "!" | "~" | "¬"
@@ -42,6 +45,8 @@ fn characters_help(diagnostic: Diagnostic, source: FileText<'_>, found: &str, pl
         {
             diagnostic.fix("write {} and a space", source.span(place), apart(source, place, "NOT"))
         }
+        "~" if !begins_operand(source, place.start) => diagnostic.help("write a space; `~` is one in typesetting only"),
+        "~" if !begins_operand(source, place.start) => diagnostic.help("write a space; `~` is one in typesetting only"),
         "!" | "~" | "¬" => diagnostic.help("write `NOT` and a space before a condition: `NOT bumper`"),
         "≠" => diagnostic.help("write `NOT` before an equality: `NOT r 3 == r 5`"),
         "/" | "--" if begins_line(source, place.start) => {
@@ -113,6 +118,15 @@ fn words_around(diagnostic: &Diagnostic, source: FileText<'_>, found: &str, plac
         }
         _ => None,
     }
+}
+
+/// Returns `true` if this is one of the two strokes around a difference, as in `|r7 - r9| < 1cm`.
+fn is_magnitude(source: FileText<'_>, place: TextRange) -> bool {
+    let (before, after) = (source.text.get(..place.start), source.text.get(place.end..));
+    let begun = after.and_then(|after| Some(after.split_once('|')?.0));
+    let ended = before.and_then(|before| Some(before.rsplit_once('|')?.1));
+    let is_difference = |text: &str| text.contains('-') && !text.contains('\n') && text.trim() == text;
+    [begun, ended].into_iter().flatten().any(is_difference)
 }
 
 /// Returns `true` if only spaces and tabs precede this place in its line.

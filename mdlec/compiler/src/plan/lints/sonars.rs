@@ -27,7 +27,7 @@ fn warning(plan: &Plan, atom: &Atom) -> Option<Diagnostic> {
     let (text, apart) = (&law.text, usize::from(first.abs_diff(*second)));
     let message = match apart {
         _ if law.name != "align" => return None,
-        0 => format!("`{text}` compares a sonar with itself, so it is done at once"),
+        0 => format!("`{text}` compares a sonar with itself, which says nothing about a wall"),
         _ if apart * 2 == SONARS => format!("`{text}` compares two walls: the sonars look in opposite directions"),
         _ => return None,
     };
