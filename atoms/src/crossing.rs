@@ -1,5 +1,5 @@
-//! Detects a person who is about to cross the robot's way: the echoes of a sonar that faces to the side come nearer
-//! faster than the robot drives.
+//! Detects a person who is about to cross the robot's way, or to reach the robot from ahead and from the side: the
+//! echoes of a sonar that does not face along the way come nearer faster than the robot drives.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Ping, Pose, Radians, SonarId};
@@ -49,9 +49,8 @@ const OF_WALL: f64 = 0.5;
 /// react. A sonar that pings once a second takes two seconds until three pings agree, and the direction of its echoes
 /// is uncertain by several degrees. A robot that stops later may already be where the person walks.
 const SOON: f64 = 8.0;
-
-/// Time, in seconds, before a person may reach the robot, at which the robot stops in any case: the way of the person
-/// need not cross the robot's way at a right angle.
+/// Time, in seconds, before a person could reach the robot, from which the robot stops wherever the person's way
+/// leads: it need not cross the robot's way at a right angle.
 const STOPS: f64 = 3.5;
 
 /// An echo: its time in seconds, and its distance along the way and to the left of it, in metres.
@@ -62,6 +61,11 @@ struct Echo {
 }
 
 impl Echo {
+    /// Returns the distance, in metres, from the centre of the robot.
+    fn range(&self) -> f64 {
+        libm::hypot(self.along, self.across)
+    }
+
     /// Returns the distance along the way if the echo is turned by `angle` around the robot.
     fn along_turned(&self, angle: Radians) -> f64 {
         let (sin, cos) = libm::sincos(angle.0);
@@ -155,9 +159,7 @@ fn comes<Y: DiffDrive + SonarRing>(
         let (x, y) = (place.x.0 - here.x.0, place.y.0 - here.y.0);
         Echo { at: ping.at.seconds(), along: x * cos + y * sin, across: y * cos - x * sin }
     };
-    let approach = |from: &Echo, to: &Echo| {
-        (libm::hypot(from.along, from.across) - libm::hypot(to.along, to.across)) / (to.at - from.at)
-    };
+    let approach = |from: &Echo, to: &Echo| (from.range() - to.range()) / (to.at - from.at);
     let moves = |speed: f64| (SPEEDS[0]..=SPEEDS[1]).contains(&speed);
     // Most echoes come from an obstacle in the way or from a fixed object. Their older places are not computed.
     let new = echo(new);
@@ -183,8 +185,7 @@ fn comes<Y: DiffDrive + SonarRing>(
     let along = new.along_turned(between(y, sonar, echoes[0].0, echoes[0].1));
     let is_before = !waits && along + apart < speed * (seconds - apart / mean);
     let own = if waits { 0.0 } else { speed };
-    let range = libm::hypot(new.along, new.across);
-    let is_soon = range - apart < STOPS * (mean + own * new.along / range);
+    let is_soon = new.range() - apart < STOPS * (mean + own * new.along / new.range());
     let meets = is_soon || along < apart + PERSON + speed * seconds && seconds < SOON && !is_before;
     let is_nearer = mean * (new.at - old.at) >= NEARER;
     let back = if is_far && seconds < BACK { (apart + CLEAR - along).max(0.0) } else { 0.0 };

@@ -5,6 +5,7 @@ use crate::trial::Sensed;
 use mdle_runtime::Nanos;
 
 const DRIVES: Driving = Driving { speed: 0.2, waits: false };
+const STANDS: Driving = Driving { waits: true, ..DRIVES };
 
 /// Returns the time, in seconds, for which a robot at rest waits for a person whose echoes its sonar 3 receives at
 /// these ranges, one second apart; `None` if it does not wait.
@@ -20,13 +21,18 @@ fn person(sonar: u8, ranges: [f64; 3]) -> Option<Crossing> {
 /// Returns the person whose echoes this sonar receives at these ranges, one second apart, at these headings of the
 /// robot.
 fn turning(sonar: u8, pings: &[(Option<f64>, f64)]) -> Option<Crossing> {
+    heard(sonar, pings, DRIVES)
+}
+
+/// Returns the person whom [`turning`] returns, for a robot that drives in this way.
+fn heard(sonar: u8, pings: &[(Option<f64>, f64)], driving: Driving) -> Option<Crossing> {
     let (mut y, mut before) = (Sensed::default(), BeforeMissed::default());
     for (second, (range, heading)) in (0..).zip(pings) {
         y.pose.theta = Radians(*heading);
         y.ping_at(SonarId::new(sonar), *range, Nanos(second * 1_000_000_000));
         before.take(&y);
     }
-    crosses(&y, &before, y.pose, DRIVES)
+    crosses(&y, &before, y.pose, driving)
 }
 
 /// Returns `true` if a robot at rest waits for the person whose echoes have these ranges.
@@ -125,14 +131,7 @@ fn a_person_who_comes_abreast_is_not_waited_for() {
 
 #[test]
 fn a_robot_that_waits_backs_off_from_a_person_who_comes_abreast() {
-    let back = |ranges: [f64; 3]| {
-        let mut y = Sensed::default();
-        for (second, range) in (0..).zip(ranges) {
-            y.ping_at(SonarId::new(4), Some(range), Nanos(second * 1_000_000_000));
-        }
-        let waits = Driving { waits: true, ..DRIVES };
-        crosses(&y, &BeforeMissed::default(), y.pose, waits).map(|person| person.back)
-    };
+    let back = |ranges: [f64; 3]| heard(4, &ranges.map(|range| (Some(range), 0.0)), STANDS).map(|person| person.back);
     assert!(back([2.5, 2.0, 1.5]).is_some_and(|back| back > 0.6), "{:?}", back([2.5, 2.0, 1.5]));
     assert_eq!(back([1.5, 1.5, 1.5]), None, "a wall");
 }
@@ -157,7 +156,10 @@ fn echoes_that_may_come_from_the_wall_ahead_are_nobody() {
 fn a_person_who_comes_from_ahead_and_from_the_side_is_waited_for() {
     let waits = |ranges| person(2, ranges).is_some();
     assert!(waits([3.4, 2.9, 2.4]), "3.4 s before they meet");
-    assert!(!waits([3.8, 3.3, 2.8]), "4.0 s before they meet");
+    assert!(!waits([3.65, 3.15, 2.65]), "3.7 s before they meet");
+    let is_kept_waiting = |ranges: [f64; 3]| heard(2, &ranges.map(|range| (Some(range), 0.0)), STANDS).is_some();
+    assert!(is_kept_waiting([3.0, 2.5, 2.0]), "3.5 s before the person reaches the robot");
+    assert!(!is_kept_waiting([3.4, 2.9, 2.4]), "4.3 s before");
 }
 
 /// The person is 39 cm ahead of the robot's centre, and 92 cm to its left.

@@ -46,7 +46,6 @@ fn characters_help(diagnostic: Diagnostic, source: FileText<'_>, found: &str, pl
             diagnostic.fix("write {} and a space", source.span(place), apart(source, place, "NOT"))
         }
         "~" if !begins_operand(source, place.start) => diagnostic.help("write a space; `~` is one in typesetting only"),
-        "~" if !begins_operand(source, place.start) => diagnostic.help("write a space; `~` is one in typesetting only"),
         "!" | "~" | "¬" => diagnostic.help("write `NOT` and a space before a condition: `NOT bumper`"),
         "≠" => diagnostic.help("write `NOT` before an equality: `NOT r 3 == r 5`"),
         "/" | "--" if begins_line(source, place.start) => {

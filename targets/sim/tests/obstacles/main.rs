@@ -51,7 +51,7 @@ fn a_doorway_fifteen_centimetres_wider_is_passed() {
     assert_clean("doorway", worlds::doorway, Body::Atrv, 90);
 }
 
-/// Of 288 Scouts with other seeds, 120 arrive. No ATRV-mini arrives.
+/// With other seeds, 205 of 240 ideal robots, 86 of 240 Scouts and 8 of 240 ATRV-minis arrive.
 #[test]
 fn a_doorway_in_a_thick_wall_across_a_room_is_passed() {
     assert_clean_of(144, "thick", worlds::thick, Body::Ideal, 80);

@@ -167,7 +167,7 @@ fn characters_and_numbers() {
             "{ A (Atom (atIsection 0b10) stop) (Atom (b) align 3-5) (Atom (b) (align(11-13))) (Atom (b) (align 3-50)) }",
             "{ A B \\alpha \\Gamma “x” @@@ }",
             "{ A (Atom\\; (r_{7}(t) == r_{ 9 }(t))\\, align r_{7} r_{10}) }",
-            "{ A (Atom (|r_7 - r_9| < 1cm) stop) (Atom (wait 2)~stop) (Atom (bumper | wait 5) stop) }",
+            "{ A (Atom (|r_7 - r_9| < 1cm) stop) (Atom (wait 2)~stop) (Atom (bumper|wait 5|bumper) stop) }",
         ],
     );
 }
