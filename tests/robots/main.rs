@@ -11,6 +11,7 @@ mod driven;
 mod emulators;
 mod evidence;
 mod formation;
+mod frames;
 mod hanging;
 mod lab_tour;
 mod late_plans;

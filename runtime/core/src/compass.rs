@@ -97,8 +97,8 @@ impl Default for Compass {
 }
 
 impl Compass {
-    /// Returns the angle by which drift has turned a frame; 0 while the drift is not known. `axis` is the direction, by
-    /// odometry, of one of the frame's axes.
+    /// Returns the angle by which drift has turned a frame; 0 while the drift is not known, and before any wall has
+    /// been measured. `axis` is the direction, by odometry, of one of the frame's axes.
     ///
     /// A frame is assumed to be parallel to the walls. However, if the first walls were not parallel to the axes of
     /// odometry, the result is always 0: among furniture, what seemed to be the first wall often is none, and a drift
@@ -108,7 +108,7 @@ impl Compass {
         let of_frame = -off_quarter(axis.0);
         let drift = self.drift + of_frame;
         let is_sound = of_frame.abs() < ALIGNED || drift.abs() <= MOST.0;
-        let is_known = self.error <= BELIEVED && self.is_askew != Some(true);
+        let is_known = self.error <= BELIEVED && self.is_askew == Some(false);
         Radians(if is_known && is_sound { drift } else { 0.0 })
     }
 

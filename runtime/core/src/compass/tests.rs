@@ -77,6 +77,13 @@ fn walls_askew_to_the_first_heading_measure_no_drift() {
     }
 }
 
+/// The direction of the plan's first frame need not be that of any wall.
+#[test]
+fn no_frame_has_drifted_before_a_wall_is_measured() {
+    let trial = Trial::new();
+    assert_eq!([0.0, 8.6, -19.0].map(|axis| trial.drift(axis)), [0.0; 3]);
+}
+
 #[test]
 fn a_short_way_and_walls_apart_tell_nothing() {
     for (metres, leads) in [(0.5, 0.0), (3.0, 0.03)] {
