@@ -283,8 +283,8 @@ fn a_plan_with_its_machine_is_less_than_16_kilobytes_of_code() {
     assert!(sizes[0].1 < 16 * 1024, "{sizes:?}");
     // Rows include every quark of the robot, even if the plan does not use it, and these executables also report
     // operands. The echoes of `goAvoid`, of five bytes each, take 0.65 kB more of code and 0.95 kB less of constants
-    // than larger ones did.
-    assert!(sizes.iter().all(|(_, code, _)| *code < 54 * 1024), "{sizes:?}");
+    // than larger ones did. The largest executable, with the memories, has 59.2 kB of code.
+    assert!(sizes.iter().all(|(_, code, _)| *code < 59 * 1024), "{sizes:?}");
 }
 
 #[test]
