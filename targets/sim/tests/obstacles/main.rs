@@ -1,7 +1,7 @@
 //! Tests `goAvoid` in narrow places: doorways, boxes in hallways, corners, rooms, and a person who walks across.
 //!
 //! Each test tries a few seeds. `MDLE_LONG=10 cargo test --release -p mdle-sim --test obstacles -- --nocapture` tries
-//! ten times as many and prints their outcomes; `MDLE_FIRST` is the first seed.
+//! ten times as many and prints their outcomes; `MDLE_FIRST` is the first seed, and `MDLE_MINUTES` the time for a run.
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking, and tells what happened")]
 
 mod chance;
@@ -11,13 +11,8 @@ mod walker;
 mod worlds;
 
 use mdle_sim::{Body, Make};
-use room::{Outcome, drive};
+use room::{Outcome, drive, number};
 use worlds::Crossing;
-
-/// Returns the whole number in the environment variable `name`; `usual` if the variable is not set.
-fn number(name: &str, usual: u64) -> u64 {
-    std::env::var(name).map_or(usual, |text| text.parse().expect("a whole number"))
-}
 
 /// Panics unless at least `share` percent of 24 runs arrive without contact.
 fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, share: u64) {

@@ -11,7 +11,7 @@ use mdle_runtime::{
 use mdle_sim::alphabet::GoAvoid;
 use mdle_sim::{Body, Make, Point, Simulated};
 
-use crate::number;
+use crate::room::number;
 use crate::worlds::{Crossing, hall};
 
 const PERIOD: Duration = Duration::from_millis(100);
