@@ -18,8 +18,6 @@ pub(crate) struct Evidence {
     /// Maximum amount by which the evidence of a cell may be below that of the cell with the most evidence on the arc
     /// of an echo, if the echo increases it.
     pub(crate) below: u8,
-    /// Amount by which a passing ping decreases the evidence of a cell.
-    pub(crate) miss: u8,
     /// Distance, in metres, up to which a ping passes the cells at the edges of its cone. A jamb further away may be
     /// there without an echo.
     pub(crate) edges: f64,
@@ -93,7 +91,7 @@ pub(crate) struct Gains {
 }
 
 /// Weights of the evidence of all bodies except a Scout.
-const EVIDENCE: Evidence = Evidence { hit: 4, below: 2, miss: 2, edges: f64::INFINITY };
+const EVIDENCE: Evidence = Evidence { hit: 4, below: 2, edges: f64::INFINITY };
 
 /// Gains of a body whose sonars all ping in every turn.
 const RING: Gains = Gains {
@@ -129,7 +127,7 @@ const SCOUT: Gains = Gains {
     beyond: 0.0,
     confirms_memory: false,
     room: 0.1,
-    evidence: Evidence { hit: 2, below: 0, miss: 3, edges: 0.6 },
+    evidence: Evidence { hit: 2, below: 0, edges: 0.6 },
     factors: [0, 4, 3, 3, 3, 3, 2, 1],
     too_near_costs: 3.0,
     winds_most: f64::INFINITY,
@@ -146,7 +144,7 @@ const ATRV: Gains = Gains {
     beyond: 0.3,
     confirms_memory: true,
     evidence: EVIDENCE,
-    factors: [0, 6, 4, 3, 2, 2, 2, 1],
+    factors: [0, 10, 6, 4, 3, 2, 2, 1],
     too_near_costs: 6.0,
     winds_most: 1.5 * core::f64::consts::PI,
     ..SCOUT

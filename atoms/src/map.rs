@@ -23,6 +23,12 @@ const UNKNOWN_ROW: [u8; BYTES] = [UNKNOWN | UNKNOWN << 4; BYTES];
 const OCCUPIED: u8 = 8;
 /// Maximum evidence of a cell.
 const MOST: u8 = 13;
+/// Amount by which a passing ping decreases the evidence of a cell. With 3, a few pings that missed a jamb beside the
+/// body cleared it, and twice as many Scouts touched it. With 1, echoes that came from elsewhere on their arcs would
+/// close doorways.
+const MISS: u8 = 2;
+/// Evidence of a cell that one ping has passed.
+const PASSED_ONCE: u8 = UNKNOWN - MISS;
 /// Angles from a sonar's axis, in degrees, of the points that represent an echo.
 const ARC: [f64; 9] = [-12.0, -9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0, 12.0];
 /// Rays along which a ping marks cells as free: the angle from the sonar's axis, in degrees, and the distance from the
@@ -127,7 +133,7 @@ impl Map {
             let centre = ping.axis(sonar);
             let (axis, from) = (centre.theta, centre.towards(centre.theta, y.ring_radius()));
             if range >= least {
-                self.pass(from, axis, (range - BEFORE).min(WITHIN), &evidence);
+                self.pass(from, axis, (range - BEFORE).min(WITHIN), evidence.edges);
             }
             if ping.range.is_some() && range < WITHIN {
                 if range >= least {
@@ -141,14 +147,14 @@ impl Map {
 
     /// Marks as free the cells that a ping from this position passed in the direction of `axis`, up to the distance
     /// `free`.
-    fn pass(&mut self, from: Pose, axis: Radians, free: f64, Evidence { miss, edges, .. }: &Evidence) {
+    fn pass(&mut self, from: Pose, axis: Radians, free: f64, edges: f64) {
         let Cell { x: left, y: low } = self.corner;
         // A ping passes many cells. In whole numbers, each takes two additions.
         let [x, y] = [(from.x, left), (from.y, low)].map(|(at, corner)| fixed(at.0 / CELL - f64::from(corner)));
         for (degrees, begin) in RAYS {
             let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
             let (along, up) = (fixed(cos), fixed(sin));
-            let free = if degrees.abs() < EDGE { free } else { free.min(*edges) };
+            let free = if degrees.abs() < EDGE { free } else { free.min(edges) };
             let end = libm::floor(free / CELL).max(0.0) as i32 + 1;
             let mut last = -1;
             for step in libm::floor(begin / CELL) as i32..end {
@@ -157,18 +163,18 @@ impl Map {
                 // A cell that is repeated in succession is changed only once.
                 if is_within(right) && is_within(above) && number != last {
                     last = number;
-                    self.free(Cell { x: left + right, y: low + above }, *miss);
+                    self.free(Cell { x: left + right, y: low + above });
                 }
             }
         }
     }
 
     /// Removes the evidence of a ping that passed a cell of the map.
-    fn free(&mut self, cell: Cell, miss: u8) {
+    fn free(&mut self, cell: Cell) {
         let (row, column, shift) = place(cell);
         if let Some(byte) = self.evidence.get_mut(row).and_then(|row| row.get_mut(column)) {
             let evidence = *byte >> shift & 15;
-            *byte -= evidence.min(miss) << shift;
+            *byte -= evidence.min(MISS) << shift;
         }
     }
 
@@ -185,7 +191,8 @@ impl Map {
     }
 
     /// Records an echo. If a cell on the echo's arc is occupied, the evidence of the cells with the most evidence is
-    /// increased; otherwise all cells on the arc become occupied.
+    /// increased. Otherwise the cells on the arc become occupied that at most one ping has passed; if pings have passed
+    /// all of them, those with the most evidence.
     ///
     /// If `is_saturated` is `true`, all cells on the arc become occupied in any case. Such an echo repeats while the
     /// robot drives along a wall that approaches its front corner, and the occupied cells that the arc still contains
@@ -207,7 +214,8 @@ impl Map {
             _ if is_saturated => evidence.max(OCCUPIED),
             true if evidence + below >= most => (evidence + hit).min(MOST),
             true => evidence,
-            false => OCCUPIED,
+            false if evidence == most || evidence >= PASSED_ONCE => OCCUPIED,
+            false => evidence,
         });
     }
 

@@ -48,6 +48,17 @@ fn pings_that_pass_clear_a_cell_but_not_one_missed_echo() {
     assert!(is_ahead(&map, 0.99), "one ping against four");
 }
 
+/// Beside the body, a sonar that points at a jamb may miss it.
+#[test]
+fn an_object_that_was_heard_often_is_kept_for_two_pings_that_miss_it() {
+    let is_kept = |misses: usize| {
+        let (echo, miss) = (Some(0.8), Some(1.2));
+        let pings = [echo, echo, echo, echo, echo, echo, miss, miss, miss];
+        is_ahead(&heard(pings.get(..6 + misses).expect("so many pings"), 2).0, 0.99)
+    };
+    assert_eq!([0, 1, 2, 3].map(is_kept), [true, true, true, false]);
+}
+
 #[test]
 fn an_echo_that_something_known_explains_adds_nothing_else() {
     let (mut map, mut y) = heard(&[], 3);
@@ -105,17 +116,29 @@ fn the_map_moves_with_the_robot_and_forgets_what_is_far() {
     assert_eq!(map.around(y.pose, Meters(1.2)).count(), 0);
 }
 
-/// Returns `true` if a cell at the right end of an echo's arc is occupied after the echo, which has this range, and
-/// more pings of the front sonar, each given by the robot's heading, in degrees, and by its range.
-fn is_end_occupied(halves: [f64; 2], range: f64, pings: &[(f64, f64)]) -> bool {
+/// Returns the cell at the right end of the arc of the front sonar's echo with this range.
+fn right_end(range: f64) -> Cell {
+    Cell::of(0.19 + range * 0.987, -range * 0.156)
+}
+
+/// Returns a map that has been updated with pings of the front sonar, 1 s apart, each given by the robot's heading, in
+/// degrees, and by its range.
+fn heard_in_turn(halves: [f64; 2], pings: &[(f64, f64)]) -> Map {
     let (mut y, mut map) = (Sensed { confirmation: 2, halves, ..Sensed::default() }, Map::EMPTY);
-    for (second, (degrees, range)) in (1..).zip([(0.0, range)].iter().chain(pings)) {
+    for (second, (degrees, range)) in (1..).zip(pings) {
         (y.now, y.pose.theta) = (Nanos(1_000_000_000 * second), Radians::from_degrees(*degrees));
         y.ping_at(AHEAD, Some(*range), y.now);
         take(&mut map, &y);
     }
+    map
+}
+
+/// Returns `true` if the cell at the right end of an echo's arc is occupied after the echo, which has this range, and
+/// more pings.
+fn is_end_occupied(halves: [f64; 2], range: f64, pings: &[(f64, f64)]) -> bool {
+    let map = heard_in_turn(halves, &[&[(0.0, range)], pings].concat());
     assert!(is_ahead(&map, 0.19 + range));
-    map.is_occupied(Cell::of(0.19 + range * 0.987, -range * 0.156))
+    map.is_occupied(right_end(range))
 }
 
 const SCOUT: [f64; 2] = [0.205; 2];
@@ -131,4 +154,19 @@ fn an_echo_of_a_scout_does_not_restore_cells_that_a_ping_passed() {
 fn a_ping_of_a_scout_passes_near_cells_only_at_the_edge_of_its_cone() {
     let is_kept = |halves, range| is_end_occupied(halves, range, &[(-16.0, 1.4)]);
     assert!(!is_kept(SCOUT, 0.4) && is_kept(SCOUT, 0.8) && !is_kept(ATRV, 0.8));
+}
+
+/// Otherwise the echo of a jamb would close the doorway, which pings have passed.
+#[test]
+fn an_echo_comes_from_cells_that_at_most_one_ping_passed() {
+    let is_occupied = |passes: usize| {
+        let pings = [(-16.0, 1.4), (-16.0, 1.4), (0.0, 0.4)];
+        let map = heard_in_turn(SCOUT, pings.get(2 - passes..).expect("two pings that pass"));
+        assert!(is_ahead(&map, 0.59));
+        map.is_occupied(right_end(0.4))
+    };
+    assert_eq!([0, 1, 2].map(is_occupied), [true, true, false]);
+    let everywhere = [-16.0, -16.0, 0.0, 16.0, 16.0].map(|degrees| (degrees, 1.4));
+    let map = heard_in_turn(SCOUT, &[everywhere.as_slice(), &[(0.0, 0.4)]].concat());
+    assert!(is_ahead(&map, 0.59), "if pings have passed the whole arc, it comes from all of it");
 }

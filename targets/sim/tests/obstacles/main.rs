@@ -37,16 +37,15 @@ fn assert_clean_of(runs: u64, name: &str, crossing: fn(Body, u64) -> Crossing, b
 }
 
 /// The doorway is 15 cm wider than the body. The width of a rectangle is measured across its length, along which it
-/// drives. Of 1200 Scouts with other seeds, 1115 arrived without contact: a limit of 90 % of 24 runs would fail by
-/// chance.
+/// drives. With the seeds 10350000 to 10351199, 1187 of 1200 Scouts arrive without contact, and 8 touch a jamb.
 #[test]
 fn a_doorway_fifteen_centimetres_wider_is_passed() {
     assert_clean("doorway", worlds::doorway, Body::Ideal, 95);
-    assert_clean_of(48, "doorway", worlds::doorway, Body::Scout, 85);
+    assert_clean_of(48, "doorway", worlds::doorway, Body::Scout, 90);
     assert_clean("doorway", worlds::doorway, Body::Atrv, 90);
 }
 
-/// With other seeds, 205 of 240 ideal robots, 86 of 240 Scouts and 8 of 240 ATRV-minis arrive.
+/// With the seeds from 10350000 on, 3343 of 3600 ideal robots, 211 of 600 Scouts and none of 240 ATRV-minis arrive.
 #[test]
 fn a_doorway_in_a_thick_wall_across_a_room_is_passed() {
     assert_clean_of(144, "thick", worlds::thick, Body::Ideal, 80);
@@ -64,7 +63,7 @@ fn a_wall_beside_the_start_is_left() {
 
 #[test]
 fn a_box_in_the_middle_of_a_hallway_is_passed() {
-    assert_clean("middle", worlds::middle, Body::Ideal, 100);
+    assert_clean("middle", worlds::middle, Body::Ideal, 99);
     assert_clean("middle", worlds::middle, Body::Scout, 95);
     assert_clean("middle", worlds::middle, Body::Atrv, 80);
 }
