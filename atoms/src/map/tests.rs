@@ -54,7 +54,7 @@ fn an_object_that_was_heard_often_is_kept_for_two_pings_that_miss_it() {
     let is_kept = |misses: usize| {
         let (echo, miss) = (Some(0.8), Some(1.2));
         let pings = [echo, echo, echo, echo, echo, echo, miss, miss, miss];
-        is_ahead(&heard(pings.get(..6 + misses).expect("so many pings"), 2).0, 0.99)
+        is_ahead(&heard(pings.get(..6 + misses).expect("at most nine pings"), 2).0, 0.99)
     };
     assert_eq!([0, 1, 2, 3].map(is_kept), [true, true, true, false]);
 }
@@ -166,7 +166,7 @@ fn an_echo_comes_from_cells_that_at_most_one_ping_passed() {
         map.is_occupied(right_end(0.4))
     };
     assert_eq!([0, 1, 2].map(is_occupied), [true, true, false]);
-    let everywhere = [-16.0, -16.0, 0.0, 16.0, 16.0].map(|degrees| (degrees, 1.4));
+    let everywhere = [-16.0, -12.0, -8.0, -4.0, 0.0, 4.0, 8.0, 12.0, 16.0].map(|degrees| (degrees, 1.4));
     let map = heard_in_turn(SCOUT, &[everywhere.as_slice(), &[(0.0, 0.4)]].concat());
     assert!(is_ahead(&map, 0.59), "if pings have passed the whole arc, it comes from all of it");
 }
