@@ -378,7 +378,7 @@ fn the_yard_is_crossed_and_the_robot_turns_left() {
 /// behaves in the same way.
 #[test]
 fn stuck_ends_a_leg_that_leads_nowhere() {
-    let legs = of_book("quarks.md", "legs.mdle");
+    let legs = of_book("quarks.md", "back_off.mdle");
     let in_rows = legs.replace("(bumper OR", "(RISING bumper OR");
     assert_ne!(legs, in_rows);
     let ends = [("legs", legs), ("legs_in_rows", in_rows)].map(|(name, text)| {

@@ -47,7 +47,7 @@ fn of_the_world(command: Command) -> Command {
                 .long_help(
                     "Place in which the plan must leave the robot: the goal of the world, or a circle in metres. A heading and \
                      its tolerance in degrees may follow: `X,Y,RADIUS,DEG,TOLERANCE`, as in `7,3,50cm,90,15`. The run is `arrived` if the robot is there when \
-                     the plan is over, `bumped` if it touches something, and `astray` if it is elsewhere; exit status 5 if \
+                     the plan is over, `bumped` if it then touches something, and `astray` if it is elsewhere; exit status 5 if \
                      it is not `arrived` [default: none]",
                 )
                 .allow_hyphen_values(true),

@@ -63,10 +63,10 @@ mod machine {
         runtime::MetersPerSecond(0.2),
         runtime::RadiansPerSecond(0.3490658503988659),
     );
-    /// `go 20 -0.3490658503988659`
-    const GO_20_MINUS_0_3490658503988659: robot::Go = robot::Go::new(
+    /// `go 20 -0.6981317007977318`
+    const GO_20_MINUS_0_6981317007977318: robot::Go = robot::Go::new(
         runtime::MetersPerSecond(0.2),
-        runtime::RadiansPerSecond(-0.3490658503988659),
+        runtime::RadiansPerSecond(-0.6981317007977318),
     );
     /// The law of the current atom, with its state since the atom began.
     #[derive(Debug)]
@@ -77,7 +77,7 @@ mod machine {
         Atom1(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (r2 < 1 OR r0 < 0.7) go 20 0.3490658503988659)`
         Atom2(<robot::Go as runtime::Control<Output>>::Law),
-        /// `(Atom (NOT r2 < 1 OR r0 < 0.7) go 20 -0.3490658503988659)`
+        /// `(Atom (NOT r2 < 1 OR r0 < 0.7) go 20 -0.6981317007977318)`
         Atom3(<robot::Go as runtime::Control<Output>>::Law),
     }
 
@@ -100,7 +100,7 @@ mod machine {
                 2 => {
                     *self = Running::Atom3(
                         runtime::Control::begin(
-                            &GO_20_MINUS_0_3490658503988659,
+                            &GO_20_MINUS_0_6981317007977318,
                             y,
                             begin,
                         ),
@@ -289,7 +289,7 @@ mod machine {
     const LAWS: runtime::TextList<'static> = runtime::TextList::new(
         concat![
             "go 0 -0.5235987755982988", "go 20 0.3490658503988659",
-            "go 20 -0.3490658503988659"
+            "go 20 -0.6981317007977318"
         ],
         &[24, 48, 73],
     );
@@ -310,11 +310,11 @@ mod machine {
     const SOURCE: runtime::Source<'static> = runtime::Source {
         files: &["wall_following.mdle"],
         brackets: &[
-            [0, 7, 0, 2],
+            [0, 8, 0, 2],
             [0, 0, 2, 0],
-            [0, 11, 2, 1],
-            [0, 12, 3, 2],
-            [0, 13, 5, 2],
+            [0, 12, 2, 1],
+            [0, 13, 3, 2],
+            [0, 14, 5, 2],
         ],
         conditions: runtime::TextList::new(
             concat![
@@ -324,13 +324,13 @@ mod machine {
             &[18, 18, 31, 51, 75],
         ),
         operands: &[
-            [0, 7, 0, 0],
-            [0, 7, 0, 0],
-            [0, 11, 0, 1],
-            [0, 12, 1, 1],
-            [0, 12, 2, 1],
-            [0, 13, 3, 1],
-            [0, 13, 4, 1],
+            [0, 8, 0, 0],
+            [0, 8, 0, 0],
+            [0, 12, 0, 1],
+            [0, 13, 1, 1],
+            [0, 13, 2, 1],
+            [0, 14, 3, 1],
+            [0, 14, 4, 1],
         ],
         texts: runtime::TextList::new(
             concat![
