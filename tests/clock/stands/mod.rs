@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout, reason = "how long it took is seen with --nocapture")]
 
 mod run;
+mod timed;
 
 use std::process::Child;
 use std::time::{Duration, Instant};
