@@ -84,6 +84,10 @@ pub(crate) struct Gains {
     /// the value of a Scout, ATRV-minis touched furniture more often; with theirs, fewer Scouts passed doorways in
     /// thick walls.
     pub(crate) too_near_costs: f64,
+    /// `goAvoid`: cost of a movement, in metres, per metre by which it brings the body nearer than 8 cm to a doubtful
+    /// cell of the map. Without it, 126 of 11400 Scouts touched a jamb of a doorway 15 cm wider than they are; now 72
+    /// do. ATRV-minis touch as many jambs with it as without, and arrive less often.
+    pub(crate) doubt_costs: f64,
     /// `goAvoid`: angle turned since the law began, in radians, from which the robot turns back instead of continuing
     /// in the same direction. On a body with four skidding wheels, odometry has an error of 2 % of each turn, with the
     /// same sign in all turns of a run.
@@ -110,6 +114,7 @@ const RING: Gains = Gains {
     evidence: EVIDENCE,
     factors: [0, 10, 6, 5, 4, 4, 2, 1],
     too_near_costs: 3.0,
+    doubt_costs: 0.0,
     winds_most: f64::INFINITY,
 };
 
@@ -130,6 +135,7 @@ const SCOUT: Gains = Gains {
     evidence: Evidence { hit: 2, below: 0, edges: 0.6 },
     factors: [0, 4, 3, 3, 3, 3, 2, 1],
     too_near_costs: 3.0,
+    doubt_costs: 3.0,
     winds_most: f64::INFINITY,
 };
 
@@ -146,6 +152,7 @@ const ATRV: Gains = Gains {
     evidence: EVIDENCE,
     factors: [0, 10, 6, 4, 3, 2, 2, 1],
     too_near_costs: 6.0,
+    doubt_costs: 0.0,
     winds_most: 1.5 * core::f64::consts::PI,
     ..SCOUT
 };

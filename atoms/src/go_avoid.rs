@@ -276,7 +276,7 @@ impl GoingRound {
         }
         let (near, from, chosen) = (Meters(0.0), Meters(f64::INFINITY), chosen.direction);
         let (goal, speed, winding) = (self.goal, self.speed, self.winding);
-        let ahead = Ahead { goal, near, from, chosen, free: None, speed, winding, before: None };
+        let ahead = Ahead { goal, near, from, chosen, free: None, speed, winding, before: None, doubts: false };
         self.narrow.input(y, here, t, ahead)
     }
 
@@ -314,8 +314,9 @@ impl GoingRound {
         let free = chosen.to_goal.map(|free| (free, asked));
         let chosen = chosen.direction;
         let near = self.near(here, t);
-        let ahead =
-            Ahead { goal: self.goal, near, from, chosen, free, speed: self.speed, winding: self.winding, before: None };
+        let (goal, speed, winding) = (self.goal, self.speed, self.winding);
+        let doubts = !self.passers.has_just_met(t);
+        let ahead = Ahead { goal, near, from, chosen, free, speed, winding, before: None, doubts };
         self.narrow.input(y, here, t, ahead)
     }
 }

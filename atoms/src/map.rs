@@ -21,6 +21,8 @@ const UNKNOWN: u8 = 4;
 const UNKNOWN_ROW: [u8; BYTES] = [UNKNOWN | UNKNOWN << 4; BYTES];
 /// Minimum evidence of an occupied cell.
 const OCCUPIED: u8 = 8;
+/// Minimum evidence of a doubtful cell: an echo came from it, and a ping has passed it since.
+const DOUBTFUL: u8 = 6;
 /// Maximum evidence of a cell.
 const MOST: u8 = 13;
 /// Amount by which a passing ping decreases the evidence of a cell. With 3, a few pings that missed a jamb beside the
@@ -327,12 +329,28 @@ impl Map {
     /// metres. The centres are relative to the robot at `here`, and are ordered by squares around the robot's own cell,
     /// from the innermost square outwards.
     pub(crate) fn around(&self, here: Pose, within: Meters) -> impl Iterator<Item = (f64, f64)> {
+        self.cells_around(here, within, |evidence| evidence >= OCCUPIED)
+    }
+
+    /// Returns the centres of the doubtful cells, like [`Self::around`]. They are not occupied, but the end of a smooth
+    /// wall may be there: a ping that meets the wall at a slant receives no echo of it, and so passes its cells.
+    pub(crate) fn doubtful_around(&self, here: Pose, within: Meters) -> impl Iterator<Item = (f64, f64)> {
+        self.cells_around(here, within, |evidence| (DOUBTFUL..OCCUPIED).contains(&evidence))
+    }
+
+    /// Returns the centres of the cells with such evidence, in the order of [`Self::around`].
+    fn cells_around(
+        &self,
+        here: Pose,
+        within: Meters,
+        is_such: impl Fn(u8) -> bool,
+    ) -> impl Iterator<Item = (f64, f64)> {
         let middle = Cell::of(here.x.0, here.y.0);
         let reach = libm::ceil(within.0 / CELL) as i32;
         (0..=reach).flat_map(square).filter_map(move |(x, y)| {
             let cell = Cell { x: middle.x + x, y: middle.y + y };
             let (x, y) = cell.centre();
-            self.is_occupied(cell).then_some((x - here.x.0, y - here.y.0))
+            is_such(self.evidence(cell)).then_some((x - here.x.0, y - here.y.0))
         })
     }
 }
@@ -381,6 +399,13 @@ impl Map {
             let (x, y) = (from.0 + part * (to.0 - from.0), from.1 + part * (to.1 - from.1));
             self.change(Cell::of(x, y), |_| MOST);
         }
+    }
+
+    /// Lets three pings pass every cell of the map; those that were marked by [`Self::occupy`] are doubtful then.
+    pub(crate) fn doubt(&mut self) {
+        let Cell { x, y } = self.corner;
+        let cells = (0..CELLS).flat_map(|row| (0..CELLS).map(move |column| Cell { x: x + column, y: y + row }));
+        cells.for_each(|cell| (0..3).for_each(|_| self.free(cell)));
     }
 }
 

@@ -51,6 +51,19 @@ pub(crate) struct Narrow {
     backs: Option<Nanos>,
 }
 
+/// How much room a movement takes.
+struct Care {
+    /// `true` if the body may also drive where there is little room.
+    is_bold: bool,
+    /// `true` if the body keeps away from doubtful cells.
+    doubts: bool,
+}
+
+impl Care {
+    /// Care of a robot that follows no way on its map.
+    const ROUND: Self = Self { is_bold: false, doubts: false };
+}
+
 impl Narrow {
     pub(crate) const EMPTY: Self =
         Self { map: Map::EMPTY, way: None, searched: Nanos::ZERO, found: Nanos::ZERO, stands: None, backs: None };
@@ -95,7 +108,7 @@ impl Narrow {
         }
         let there = here.towards(chosen, AHEAD);
         let next = Next { x: there.x.0, y: there.y.0, is_straight: false };
-        self.towards(y, here, next, (speed, winding), false)
+        self.towards(y, here, next, (speed, winding), Care::ROUND)
     }
 
     /// Returns the input of a robot at `here`; `None` if the tangent rule chooses the input.
@@ -127,7 +140,8 @@ impl Narrow {
         let anyhow = Next { x: there.x.0, y: there.y.0, is_straight: false };
         let next = self.way.or((!y.is_disc()).then_some(anyhow))?;
         let is_bold = self.stands.is_some_and(|since| t.since(since) > STANDS);
-        let twist = self.towards(y, here, next, (ahead.speed, ahead.winding), is_bold)?;
+        let care = Care { is_bold, doubts: ahead.doubts };
+        let twist = self.towards(y, here, next, (ahead.speed, ahead.winding), care)?;
         self.stands = self.stands.or(Some(t)).filter(|_| twist.v.0 == 0.0);
         Some(twist)
     }
@@ -161,14 +175,16 @@ impl Narrow {
         here: Pose,
         next: Next,
         (speed, winding): (MetersPerSecond, Winding),
-        is_bold: bool,
+        Care { is_bold, doubts }: Care,
     ) -> Option<Twist> {
         let (sin, cos) = libm::sincos(here.theta.0);
         let (dx, dy) = (next.x - here.x.0, next.y - here.y.0);
         let (ahead, left) = (dx * cos + dy * sin, dy * cos - dx * sin);
         let speed = MetersPerSecond(speed.0.min(FASTEST));
         let aim = Aim { ahead, left, is_straight: next.is_straight, winding };
-        Surroundings::of(y, &self.map, here).towards(&aim, speed, is_bold)
+        let near = Surroundings::of(y, &self.map, here);
+        let near = if doubts { near.doubt(y, &self.map, here) } else { near };
+        near.towards(&aim, speed, is_bold)
     }
 
     /// Returns `true` if the body can drive straight towards the goal on the map. Before a doorway, the map has jambs
@@ -198,7 +214,17 @@ mod tests {
     fn ahead(y: &Sensed, free: Option<(Meters, Meters)>) -> Ahead {
         let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
         let (near, from, speed) = (Meters(0.0), Meters(5.0), MetersPerSecond(0.2));
-        Ahead { goal, near, from, chosen: Radians(0.0), free, speed, winding: Winding::begin(y), before: None }
+        Ahead {
+            goal,
+            near,
+            from,
+            chosen: Radians(0.0),
+            free,
+            speed,
+            winding: Winding::begin(y),
+            before: None,
+            doubts: true,
+        }
     }
 
     /// Returns `true` if a robot that follows a way leaves it, with a jamb 0.3 m ahead of its centre and `left` metres

@@ -20,6 +20,9 @@ const PASSES_MOST: f64 = 8.0;
 /// Number of consecutive turns in which the robot must detect a crossing person before it reacts. A wall that the edge
 /// of a cone touches is mistaken for a person in fewer turns.
 const SURE: u32 = 5;
+/// Time after a person made the robot stop, in seconds, in which it does not mind doubtful cells of its map: a person
+/// leaves such cells, and a robot that hesitates where people walk is met more often.
+const JUST: f64 = 20.0;
 /// Minimum time, in seconds, for which the robot stands still for a person who is about to cross its way; it stands
 /// still at least until the person should have passed.
 const STANDS: f64 = 2.5;
@@ -133,6 +136,11 @@ impl Passers {
         t < self.stands_until
     }
 
+    /// Returns `true` if a person made the robot stop within the last [`JUST`] seconds.
+    pub(crate) fn has_just_met(&self, t: Nanos) -> bool {
+        self.stands_until > Nanos::ZERO && t < after(self.stands_until, JUST)
+    }
+
     /// Returns the speed at which the robot, at `here`, keeps out of the way of the person for whom it stops: it backs
     /// off at most at `speed`, or stands still.
     pub(crate) fn waits(&self, obstacles: &Obstacles, here: Pose, speed: MetersPerSecond) -> MetersPerSecond {
@@ -152,4 +160,17 @@ fn after(t: Nanos, seconds: f64) -> Nanos {
 fn freer(obstacles: &Obstacles, goal: Radians) -> Side {
     let [left, right] = [90.0, -90.0].map(|side| obstacles.free(Radians(goal.0 + Radians::from_degrees(side).0)));
     if right >= ROOM || right >= left { Side::Right } else { Side::Left }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_person_has_just_been_met_for_twenty_seconds() {
+        let second = |number: u64| Nanos(number * 1_000_000_000);
+        let met = Passers { stands_until: second(30), ..Passers::default() };
+        assert_eq!([29, 49, 50].map(|number| met.has_just_met(second(number))), [true, true, false]);
+        assert!(!Passers::default().has_just_met(second(1)));
+    }
 }

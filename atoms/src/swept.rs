@@ -14,6 +14,8 @@ use crate::winding::Winding;
 
 /// Maximum number of occupied cells that are considered; these are the nearest ones.
 const POINTS: usize = 96;
+/// Maximum number of doubtful cells that are considered; these are the nearest ones.
+const DOUBTS: usize = 32;
 /// Margin around the body's smallest enclosing circle, in metres. Occupied cells farther away are ignored.
 const WITHIN: f64 = 0.18;
 /// Turn rates to try, in rad/s.
@@ -59,10 +61,15 @@ pub(crate) struct Aim {
     pub(crate) winding: Winding,
 }
 
-/// Outline of a body, and the occupied cells around it.
+/// Outline of a body, and the occupied and the doubtful cells around it.
 pub(crate) struct Surroundings {
     points: [(f64, f64); POINTS],
     count: usize,
+    doubts: [(f64, f64); DOUBTS],
+    /// Number of doubtful cells; 0 before [`Surroundings::doubt`].
+    doubtful: usize,
+    /// Cost, in metres, per metre by which a doubtful cell is nearer than `CLOSE`.
+    doubt_costs: f64,
     too_near: TooNear,
     /// Cost, in metres, per metre by which an obstacle of `too_near` is nearer than `CLOSE`.
     too_near_costs: f64,
@@ -81,23 +88,28 @@ impl Surroundings {
         let mut near = Self {
             points: [(0.0, 0.0); POINTS],
             count: 0,
+            doubts: [(0.0, 0.0); DOUBTS],
+            doubtful: 0,
+            doubt_costs: Gains::of(y).doubt_costs,
             too_near: TooNear::of(y, here),
             too_near_costs: Gains::of(y).too_near_costs,
             half_length: half_length - radius,
             half_width: half_width - radius,
             radius,
         };
-        let (sin, cos) = libm::sincos(here.theta.0);
         let within = y.body_radius().0 + WITHIN;
-        for (x, y) in map.around(here, Meters(within)) {
-            if libm::hypot(x, y) < within
-                && let Some(place) = near.points.get_mut(near.count)
-            {
-                *place = (x * cos + y * sin, y * cos - x * sin);
-                near.count += 1;
-            }
-        }
+        near.count = placed(&mut near.points, map.around(here, Meters(within)), here.theta, within);
         near
+    }
+
+    /// Adds the doubtful cells around the body of `y` at `here`, so that movements near them cost more.
+    pub(crate) fn doubt<Y: DiffDrive>(mut self, y: &Y, map: &Map, here: Pose) -> Self {
+        if self.doubt_costs > 0.0 {
+            let within = y.body_radius().0 + WITHIN;
+            let cells = map.doubtful_around(here, Meters(within));
+            self.doubtful = placed(&mut self.doubts, cells, here.theta, within);
+        }
+        self
     }
 
     /// Returns the distance, in metres, between the body and the nearest occupied cell.
@@ -191,11 +203,29 @@ impl Surroundings {
         let Radians(off) = Radians(libm::atan2(dy, dx) - theta).wrapped();
         let off = if back.is_some_and(|back| back * off < 0.0) { TAU - off.abs() } else { off.abs() };
         let stands = if v <= 0.0 { STANDING_COSTS } else { 0.0 };
+        let doubts = self.room(self.doubts.iter().take(self.doubtful), end);
+        let doubtful = if kept < 0.0 { 0.0 } else { self.doubt_costs } * (CLOSE - doubts).max(0.0);
         let too_near = self.too_near_costs * (CLOSE - self.room(self.too_near.places(), end)).max(0.0);
-        let tight =
-            too_near + if kept < 0.0 { 0.0 } else { 1.0 } * (ROOM - least).max(0.0) + 4.0 * (CLOSE - least).max(0.0);
+        let tight = too_near
+            + doubtful
+            + if kept < 0.0 { 0.0 } else { 1.0 } * (ROOM - least).max(0.0)
+            + 4.0 * (CLOSE - least).max(0.0);
         Some(libm::hypot(dx, dy) + if aim.is_straight { OFF_COSTS_STRAIGHT } else { OFF_COSTS } * off + tight + stands)
     }
+}
+
+/// Puts the centres of cells, relative to a body with this heading, into `places`, as many as there is room for, except
+/// those that are at least `within` metres away. Returns their number.
+fn placed(
+    places: &mut [(f64, f64)],
+    cells: impl Iterator<Item = (f64, f64)>,
+    Radians(heading): Radians,
+    within: f64,
+) -> usize {
+    let (sin, cos) = libm::sincos(heading);
+    let near = cells.filter(|(x, y)| libm::hypot(*x, *y) < within);
+    let pairs = places.iter_mut().zip(near);
+    pairs.map(|(place, (x, y))| *place = (x * cos + y * sin, y * cos - x * sin)).count()
 }
 
 #[cfg(test)]
@@ -227,6 +257,24 @@ mod tests {
         assert_eq!(straight, Some(Twist { v: SPEED, omega: RadiansPerSecond(0.0) }));
         let aside = towards(&Sensed::default(), 0.4, &[]).expect("nothing near");
         assert!(aside.omega.0 > 0.0, "{aside:?}");
+    }
+
+    /// The end of a wall is ahead to the left, but a ping that met the wall at a slant has passed it.
+    #[test]
+    fn a_scout_approaches_the_doubtful_end_of_a_wall_slowly() {
+        let mut map = Map::EMPTY;
+        map.occupy((0.22, 0.17), (0.22, 0.6));
+        map.doubt();
+        assert_eq!(map.around(Pose::ORIGIN, Meters(0.7)).count(), 0, "nothing is occupied");
+        let towards = |y: &Sensed, is_bold| {
+            let near = Surroundings::of(y, &map, Pose::ORIGIN).doubt(y, &map, Pose::ORIGIN);
+            near.towards(&aim(0.0), SPEED, is_bold).map(|twist| twist.v)
+        };
+        let scout = Sensed { confirmation: 2, ..Sensed::default() };
+        let slow = MetersPerSecond(SPEED.0 / 2.0);
+        assert!(towards(&scout, false).is_some_and(|v| v <= slow));
+        let (bold, another) = (towards(&scout, true), towards(&Sensed::default(), false));
+        assert_eq!([bold, another], [Some(SPEED); 2], "bold, and another body");
     }
 
     #[test]

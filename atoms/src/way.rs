@@ -44,6 +44,8 @@ pub(crate) struct Ahead {
     pub(crate) winding: Winding,
     /// Next place of the last way; `None` if there is no last way.
     pub(crate) before: Option<Next>,
+    /// `true` if the robot keeps away from doubtful cells.
+    pub(crate) doubts: bool,
 }
 
 /// The next place on a way.
@@ -177,6 +179,7 @@ mod tests {
             speed: MetersPerSecond(0.2),
             winding: Winding::begin(&Sensed::default()),
             before,
+            doubts: false,
         }
     }
 
