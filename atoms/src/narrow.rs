@@ -51,7 +51,7 @@ pub(crate) struct Narrow {
     backs: Option<Nanos>,
 }
 
-/// How much room a movement takes.
+/// Conditions under which a movement is chosen.
 struct Care {
     /// `true` if the body may also drive where there is little room.
     is_bold: bool,
@@ -236,6 +236,21 @@ mod tests {
         narrow.map.occupy((0.3, left), (0.3, left + 0.5));
         let ahead = ahead(&y, Some((Meters(3.0), Meters(0.5))));
         narrow.input(&y, Pose::ORIGIN, Nanos(1), ahead).is_none()
+    }
+
+    #[test]
+    fn doubtful_cells_beside_a_way_are_approached_slowly() {
+        let y = Sensed { confirmation: 2, ..Sensed::default() };
+        let next = Next { x: 0.4, y: 0.0, is_straight: false };
+        let mut narrow = Narrow { way: Some(next), ..Narrow::EMPTY };
+        narrow.map.occupy((0.22, 0.17), (0.22, 0.6));
+        narrow.map.doubt();
+        let speed = |doubts| {
+            let mut on_way = narrow;
+            let twist = on_way.input(&y, Pose::ORIGIN, Nanos(1), Ahead { doubts, ..ahead(&y, None) });
+            twist.map(|twist| twist.v.0)
+        };
+        assert_eq!([true, false].map(speed), [Some(FASTEST / 2.0), Some(FASTEST)]);
     }
 
     #[test]

@@ -102,7 +102,7 @@ impl Surroundings {
         near
     }
 
-    /// Adds the doubtful cells around the body of `y` at `here`, so that movements near them cost more.
+    /// Makes movements near the doubtful cells around the body of `y` at `here` cost more.
     pub(crate) fn doubt<Y: DiffDrive>(mut self, y: &Y, map: &Map, here: Pose) -> Self {
         if self.doubt_costs > 0.0 {
             let within = y.body_radius().0 + WITHIN;
