@@ -45,8 +45,6 @@ const AGAIN: Nanos = Nanos(1_000_000_000);
 const AT_FIRST: f64 = 0.1;
 /// Maximum error of the drift, in radians.
 const UNKNOWN: f64 = 0.35;
-/// Maximum error, in radians, at which the drift is treated as known.
-const BELIEVED: f64 = 0.3;
 /// Maximum deviation of a measurement from the drift, as a multiple of their combined error. A measurement with a
 /// larger deviation is not from a wall and is rejected.
 const GATE: f64 = 2.0;
@@ -54,24 +52,23 @@ const GATE: f64 = 2.0;
 const OF_TURNS: f64 = 0.025;
 /// Increase of the squared error of the heading per metre driven, in square radians.
 const OF_WAYS: f64 = 2e-4;
-/// Maximum angle, in radians, between a frame's axes and the axes of odometry at which the two are treated as aligned.
-const ALIGNED: f64 = 0.02;
-/// Maximum angle, in radians, between the first walls and the axes of odometry at which the walls are treated as
-/// parallel to these axes.
+/// Maximum angle, in radians, between the first walls and the axes of odometry, or of a frame, at which the walls are
+/// treated as parallel to these axes.
 const ALONG_AXES: f64 = 0.17;
-/// Maximum drift of a frame whose axes are not the axes of odometry. A frame with a larger drift is treated as not
+/// Maximum drift of a frame that is not parallel to the first walls. A frame with a larger drift is treated as not
 /// parallel to the walls of the room.
 const MOST: Radians = Radians::from_degrees(20.0);
 
 /// Estimate of the drift of the odometry heading, from walls that are parallel or at right angles to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compass {
-    /// Direction of the walls in odometry coordinates, in radians; 0 if the heading has not drifted.
+    /// Direction of the walls in odometry coordinates, in radians; 0 if the walls were parallel to the axes of odometry
+    /// and the heading has not drifted.
     drift: f64,
     /// Error of `drift`, in radians.
     error: f64,
-    /// `true` if the first walls were askew to the axes of odometry; `None` before any wall is measured.
-    is_askew: Option<bool>,
+    /// Direction of the first walls in odometry coordinates, in radians; `None` before any wall is measured.
+    first: Option<f64>,
     /// Pose by odometry at the last output.
     last: Pose,
     /// Origin and direction of the axis along which the lines of the walls are measured; `None` while the robot does
@@ -87,7 +84,7 @@ impl Default for Compass {
         Self {
             drift: 0.0,
             error: AT_FIRST,
-            is_askew: None,
+            first: None,
             last: Pose::ORIGIN,
             way: None,
             sides: [RegressionLine::default(); 2],
@@ -97,26 +94,29 @@ impl Default for Compass {
 }
 
 impl Compass {
-    /// Returns the angle by which drift has turned a frame; 0 while the drift is not known, and before any wall has
-    /// been measured. `axis` is the direction, by odometry, of one of the frame's axes.
+    /// Returns the angle by which drift has turned a frame, by the last measurement; 0 before any wall is measured.
+    /// `axis` is the direction, by odometry, of one of the frame's axes.
     ///
-    /// A frame is assumed to be parallel to the walls. However, if the first walls were not parallel to the axes of
-    /// odometry, the result is always 0: among furniture, what seemed to be the first wall often is none, and a drift
-    /// measured from it would be wrong by up to 40°.
+    /// A frame is assumed to be parallel to the walls. However, if the first walls were parallel neither to the axes of
+    /// odometry nor to the frame, the result is always 0: among furniture, what seemed to be the first wall often is
+    /// none, and a drift measured from it would be wrong by up to 40°.
     #[must_use]
     pub fn drift(&self, axis: Radians) -> Radians {
-        let of_frame = -off_quarter(axis.0);
-        let drift = self.drift + of_frame;
-        let is_sound = of_frame.abs() < ALIGNED || drift.abs() <= MOST.0;
-        let is_known = self.error <= BELIEVED && self.is_askew == Some(false);
-        Radians(if is_known && is_sound { drift } else { 0.0 })
+        let Some(first) = self.first else { return Radians(0.0) };
+        let off = off_quarter(first - axis.0);
+        let drift = self.drift - first + off;
+        if off.abs() <= ALONG_AXES {
+            return Radians(drift);
+        }
+        // The plan may have taken the frame when the heading had already drifted.
+        let drift = off_quarter(drift);
+        Radians(if first.abs() <= ALONG_AXES && drift.abs() <= MOST.0 { drift } else { 0.0 })
     }
 
     /// Updates the drift with the last pings and the odometry pose of a robot with this shape. Does nothing for a robot
-    /// whose sonars all ping in every turn, because its odometry is assumed not to drift, and nothing once the first
-    /// walls have proved askew.
+    /// whose sonars all ping in every turn, because its odometry is assumed not to drift.
     pub fn take(&mut self, pings: &[Pings; SONARS], odometry: Pose, shape: &Shape) {
-        if shape.confirmation >= PINGS_KEPT || self.is_askew == Some(true) {
+        if shape.confirmation >= PINGS_KEPT {
             return;
         }
         let turned = Radians(odometry.theta.0 - self.last.theta.0).wrapped().0.abs();
@@ -130,13 +130,14 @@ impl Compass {
         }
     }
 
-    /// Combines the drift with a measurement. The first measurement decides whether walls are parallel to the axes of
-    /// odometry.
+    /// Combines the drift with a measurement. The first measurement of walls that are not parallel to the axes of
+    /// odometry replaces the drift.
     fn measure(&mut self, drift: f64, error: f64) {
-        let off = drift - self.drift;
-        if *self.is_askew.get_or_insert(off.abs() > ALONG_AXES) {
-            return;
+        if self.first.is_none() && drift.abs() > ALONG_AXES {
+            (self.drift, self.error) = (drift, error);
         }
+        self.first.get_or_insert(drift);
+        let off = drift - self.drift;
         let (ours, theirs) = (self.error * self.error, error * error);
         if off.abs() <= GATE * libm::sqrt(ours + theirs) {
             self.drift += off * ours / (ours + theirs);
@@ -154,7 +155,7 @@ impl Compass {
         if self.way.is_some() {
             return self.way;
         }
-        let off = self.is_askew.map_or(0.0, |_| off_quarter(odometry.theta.0 - self.drift));
+        let off = self.first.map_or(0.0, |_| off_quarter(odometry.theta.0 - self.drift));
         let axis = Radians(odometry.theta.0 - off);
         if !heads_along(axis) {
             return None;
@@ -218,7 +219,7 @@ impl Compass {
     fn faces(&mut self, pings: &[Pings; SONARS], odometry: Pose, apart: Meters) {
         let newest = pings.iter().filter_map(|pings| pings.newest_first().next()).map(|ping| ping.at).max();
         let Some(newest) =
-            newest.filter(|newest| newest.since(self.judged) >= AGAIN && self.error > THREE && self.is_askew.is_some())
+            newest.filter(|newest| newest.since(self.judged) >= AGAIN && self.error > THREE && self.first.is_some())
         else {
             return;
         };
