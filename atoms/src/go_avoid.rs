@@ -362,10 +362,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         let here = y.pose();
         self.winding.take(&self.driven.1, &here);
         self.driven = (self.driven.0 + here.distance(&self.driven.1).0, here);
-        // In a narrow place, the walls heard need not be those of a hallway, so the drift is not used.
-        if !self.narrow.follows() {
-            self.turn_goal(y.drift(self.axis), here);
-        }
+        self.turn_goal(y.drift(self.axis), here);
         self.progress.take(here, &self.goal, t);
         self.memory.take(y);
         self.narrow.take(y, here);
