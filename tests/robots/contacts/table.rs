@@ -101,6 +101,7 @@ pub(super) const TABLE: &[Row] = &[
     row("simulator.md", "Ahead", "floor"),
     row("simulator.md", "Ahead", "hall").touches(10, "the walker comes up from a side while the robot stands"),
     row("simulator.md", "Ahead", "room").touches(30, "furniture beside the way, most often a rectangle at 30 cm/s"),
+    row("simulator.md", "Along", "maze"),
     row("simulator.md", "Home", "home"),
     row("state_machine.md", "Main", "floor, hall").asks("it drives until it touches"),
     row("testing.md", "Dock", "floor, hall"),

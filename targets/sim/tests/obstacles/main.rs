@@ -19,14 +19,26 @@ fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, sha
     assert_clean_of(24, name, crossing, body, share);
 }
 
-/// Panics unless at least `share` percent of this number of runs arrive without contact.
+/// Panics unless at least `share` percent of this number of runs arrive without contact within five minutes.
 fn assert_clean_of(runs: u64, name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, share: u64) {
+    assert_clean_within(5, runs, name, crossing, body, share);
+}
+
+/// Panics unless at least `share` percent of this number of runs arrive without contact within `minutes`.
+fn assert_clean_within(
+    minutes: u64,
+    runs: u64,
+    name: &str,
+    crossing: fn(Body, u64) -> Crossing,
+    body: Body,
+    share: u64,
+) {
     let (first, count) = (number("MDLE_FIRST", 5000), runs * number("MDLE_LONG", 1));
     let (mut clean, mut touched) = (0, 0);
     for seed in first..first + count {
         let make = Make { body, seed: (body != Body::Ideal).then_some(seed), ..Make::default() };
         let Crossing { world, to } = crossing(body, seed);
-        match drive(&make, &world, to) {
+        match drive(&make, &world, to, minutes) {
             Outcome::Clean => clean += 1,
             Outcome::Touched(_) => touched += 1,
             Outcome::TimedOut => {}
@@ -94,6 +106,16 @@ fn the_first_passages_of_the_maze_are_driven() {
     assert_clean("maze", worlds::maze, Body::Ideal, 100);
     assert_clean("maze", worlds::maze, Body::Scout, 90);
     assert_clean("maze", worlds::maze, Body::Atrv, 90);
+}
+
+/// The walls are parallel to the axes of odometry, so the drift of the heading is measured. With the seeds from
+/// 8350000 on, 118 of 120 Scouts and 116 of 120 ATRV-minis arrive without contact. While the drift counted as none
+/// where it was no longer known precisely, 112 and 112 did.
+#[test]
+fn the_whole_maze_is_crossed_within_an_hour() {
+    assert_clean_within(60, 8, "whole maze", worlds::whole_maze, Body::Ideal, 100);
+    assert_clean_within(60, 8, "whole maze", worlds::whole_maze, Body::Scout, 85);
+    assert_clean_within(60, 8, "whole maze", worlds::whole_maze, Body::Atrv, 85);
 }
 
 /// Before `goAvoid` waited for the walker, 14 of 40 ideal robots and 19 of 40 Scouts collided with the walker. Before

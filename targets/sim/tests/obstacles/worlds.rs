@@ -153,3 +153,15 @@ pub(crate) fn maze(_: Body, seed: u64) -> Crossing {
     world.start.theta.0 = core::f64::consts::FRAC_PI_2 + chance.within(0.1);
     Crossing { to: Point { x: 1.8, y: 4.2 }, world }
 }
+
+/// Returns the world `maze`, with a start in the lower row that faces up, and a goal in the upper left corner, which is
+/// 7 m off.
+pub(crate) fn whole_maze(_: Body, seed: u64) -> Crossing {
+    let mut world = World::named("maze").expect("a world").expect("a good world");
+    let mut chance = Chance::new(seed ^ 0x3a);
+    world.start.x.0 = 4.2 + chance.within(0.1);
+    world.start.y.0 = 0.6 + chance.within(0.1);
+    world.start.theta.0 = core::f64::consts::FRAC_PI_2 + chance.within(0.087);
+    let to = Point { x: world.start.x.0 - 3.5, y: world.start.y.0 + 6.06 };
+    Crossing { world, to }
+}

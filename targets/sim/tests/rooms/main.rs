@@ -32,13 +32,13 @@ fn clean(name: &str, runs: impl Iterator<Item = (u64, Outcome)>) -> usize {
 
 #[test]
 fn rooms_of_convex_obstacles_are_crossed() {
-    let runs = (0..24).map(|seed| (seed, drive(&ideal(), &room(seed, GAP), Point { x: 7.0, y: 7.0 })));
+    let runs = (0..24).map(|seed| (seed, drive(&ideal(), &room(seed, GAP), Point { x: 7.0, y: 7.0 }, 5)));
     assert!(clean("ideal", runs) >= 23);
 }
 
 #[test]
 fn rooms_are_crossed_by_a_scout_too() {
-    let runs = (0..24).map(|seed| (seed, drive(&scout(seed), &room(seed, GAP), Point { x: 7.0, y: 7.0 })));
+    let runs = (0..24).map(|seed| (seed, drive(&scout(seed), &room(seed, GAP), Point { x: 7.0, y: 7.0 }, 5)));
     assert!(clean("scout", runs) >= 22);
 }
 
@@ -49,7 +49,7 @@ fn past(walls: &str) -> (usize, usize) {
         let run = move |seed: u64| {
             let y = 0.1 * (seed as f64 / 3.0 - 0.5);
             let world = World::parse("a test's world", &format!("start = {{ y = {y} }}\n{walls}"));
-            (seed, drive(&make(seed), &world.expect("a good world"), Point { x: 6.0, y }))
+            (seed, drive(&make(seed), &world.expect("a good world"), Point { x: 6.0, y }, 5))
         };
         (0..4).map(run)
     };
@@ -87,7 +87,7 @@ fn meet(name: &str, make: fn(u64) -> Make, seeds: u64, speed: f64, right: f64) -
             15.5 / speed
         );
         let world = World::parse("a test's world", &text).expect("a good world");
-        (seed, drive(&make(seed), &world, Point { x: 6.0, y }))
+        (seed, drive(&make(seed), &world, Point { x: 6.0, y }, 5))
     };
     clean(name, (0..seeds).map(run))
 }

@@ -70,8 +70,8 @@ pub(crate) fn number(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect("a whole number"))
 }
 
-/// Drives to a place, relative to the start, in `world`. A run fails after five minutes, or after `MDLE_MINUTES`.
-pub(crate) fn drive(make: &Make, world: &World, to: Point) -> Outcome {
+/// Drives to a place in `world`. A run fails after this number of minutes, or after `MDLE_MINUTES`.
+pub(crate) fn drive(make: &Make, world: &World, to: Point, minutes: u64) -> Outcome {
     let period = Duration::from_millis(100);
     let mut robot = Simulated::with(make, world, world.start, period).expect("a start on the floor");
     let (mut input, mut law) = (Twist::default(), None);
@@ -79,7 +79,7 @@ pub(crate) fn drive(make: &Make, world: &World, to: Point) -> Outcome {
     let Pose { x, y, theta } = world.start;
     let bearing = libm::atan2(to.y - y.0, to.x - x.0) - theta.0;
     let range = libm::hypot(to.x - x.0, to.y - y.0);
-    for turn in 0..MINUTE * number("MDLE_MINUTES", 5) {
+    for turn in 0..MINUTE * number("MDLE_MINUTES", minutes) {
         let y = robot.exchange(&input).expect("finite inputs");
         let t = Nanos(turn * 100_000_000);
         contacts += u32::from(y.pressed() && !touched);
