@@ -285,15 +285,21 @@ mod tests {
         assert!(turns(&sized(0.315, 0.27)).is_none_or(|omega| omega < 0.7));
     }
 
-    /// In an arc to the left, the rear right corner comes within 2 cm of the centres of the cells.
+    /// In an arc to the left, the rear right corner of the widest body comes within 2 cm of the centres of the cells,
+    /// that of the next one within 4 cm, and that of the narrowest one within 6 cm.
     #[test]
-    fn a_corner_does_not_swing_into_half_a_cell() {
+    fn a_corner_does_not_swing_into_a_wall_that_is_nearer_than_its_cells() {
         let mut map = Map::EMPTY;
         map.occupy((-0.6, -0.36), (0.6, -0.36));
-        let near = Surroundings::of(&sized(0.315, 0.29), &map, Pose::ORIGIN);
-        let is_free = |omega: f64, kept: f64| near.cost(SPEED.0, omega, near.now(), kept, &aim(0.4), None).is_some();
-        assert!(is_free(0.35, 0.0) && !is_free(0.35, near.swings(0.35)));
-        assert!(is_free(0.15, near.swings(0.15)), "a slower turn is free");
+        let beside = |half_width: f64| Surroundings::of(&sized(0.315, half_width), &map, Pose::ORIGIN);
+        let free = |near: &Surroundings, omega: f64, kept: f64| {
+            near.cost(SPEED.0, omega, near.now(), kept, &aim(0.4), None).is_some()
+        };
+        let is_free = |half_width: f64| free(&beside(half_width), 0.35, beside(half_width).swings(0.35));
+        assert_eq!([0.29, 0.27, 0.25].map(is_free), [false, false, true]);
+        let near = beside(0.29);
+        assert!(free(&near, 0.35, 0.0), "the map alone would allow it");
+        assert!(free(&near, 0.15, near.swings(0.15)), "a slower turn is free");
         let disc = Surroundings::of(&Sensed::default(), &map, Pose::ORIGIN);
         assert_eq!((near.swings(0.0), disc.swings(0.7)), (0.0, 0.0), "a doorway is passed straight");
     }

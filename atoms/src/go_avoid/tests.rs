@@ -221,6 +221,23 @@ fn a_dead_end_is_left() {
     assert!(v.0 < 0.0, "{v:?}");
 }
 
+#[test]
+fn the_goal_turns_while_the_robot_follows_its_map() {
+    let mut y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
+    let mut law = quark(0.0, 5.0).begin(&y, begun());
+    for turn in 1..=50 {
+        y.now = Nanos(turn * 100_000_000);
+        for (number, range) in [(15, 0.3), (0, 0.25), (1, 0.3), (4, 0.2), (12, 0.2)] {
+            y.ping_at(mdle_runtime::SonarId::new(number), Some(range), y.now);
+        }
+        law.input(&y, y.now);
+    }
+    assert!(law.narrow.follows());
+    y.drift = Radians::from_degrees(90.0);
+    law.input(&y, y.now);
+    assert!(law.goal.distance(&Pose { y: Meters(5.0), ..Pose::ORIGIN }).0 < 1e-9, "{:?}", law.goal);
+}
+
 /// Odometry may report a heading across the walls for a robot that is parallel to them.
 #[test]
 fn the_drift_of_the_heading_decides_whether_a_robot_is_askew() {
@@ -233,18 +250,27 @@ fn the_drift_of_the_heading_decides_whether_a_robot_is_askew() {
     assert!(!departs(0.0, 20.0) && !departs(20.0, 0.0));
 }
 
+/// Returns `true` if a robot that has driven `driven` metres follows its map after it has not moved for this time.
+fn follows_map(y: &Sensed, driven: f64, seconds: f64) -> bool {
+    let mut law = quark(0.0, 5.0).begin(y, begun());
+    law.driven.0 = driven;
+    let chosen = Chosen { direction: Radians(0.0), ahead: Meters(0.2), to_goal: None };
+    law.squeeze(y, y.pose, Nanos::ZERO, &chosen);
+    law.squeeze(y, y.pose, Nanos((seconds * 1e9) as u64), &chosen).is_some()
+}
+
 #[test]
 fn a_rectangle_that_has_just_begun_follows_its_map_later() {
-    let follows = |driven: f64, seconds: f64| {
-        let y = Sensed { confirmation: 2, ..sized(0.315, 0.27) };
-        let mut law = quark(0.0, 5.0).begin(&y, begun());
-        law.driven.0 = driven;
-        let chosen = Chosen { direction: Radians(0.0), ahead: Meters(0.2), to_goal: None };
-        law.squeeze(&y, y.pose, Nanos::ZERO, &chosen);
-        law.squeeze(&y, y.pose, Nanos((seconds * 1e9) as u64), &chosen).is_some()
-    };
+    let follows =
+        |driven: f64, seconds: f64| follows_map(&Sensed { confirmation: 2, ..sized(0.315, 0.27) }, driven, seconds);
     assert!(!follows(0.0, 1.5) && follows(0.0, 2.1));
     assert!(!follows(0.6, 1.1) && follows(0.6, 1.5));
+}
+
+#[test]
+fn a_robot_without_progress_follows_its_map_and_goes_round_by_turns() {
+    let follows = [40.0, 50.0, 100.0, 110.0].map(|seconds| follows_map(&Sensed::default(), 1.0, seconds));
+    assert_eq!(follows, [true, false, false, true]);
 }
 
 /// The robot stands beside a wall on its right, where it would drive away in an arc to the left.
