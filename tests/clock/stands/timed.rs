@@ -1,4 +1,4 @@
-//! An emulated robot that measures how late it is, so that a busy machine is told from a robot that does not answer.
+//! An emulated robot that measures how late it is: on a busy machine, a robot may seem to give no answer.
 
 use std::time::{Duration, Instant};
 
