@@ -221,8 +221,8 @@ fn a_scout_arrives_whose_sonars_fire_in_turn_and_miss_and_whose_wheels_slip() {
     assert!(arrived.count() >= 19);
 }
 
-/// In batches with the seeds 10350000 to 10350299, which were not used to tune parameters, a Scout arrives in 300, 300,
-/// 300 and 295 tours where walls have `rough` 0, 0.25, 0.5 and 1, and an ATRV-mini in 300, 300, 300 and 299.
+/// In batches with the seeds 10492000 to 10492299, which were not used to tune parameters, a Scout arrives in 299, 299,
+/// 299 and 294 tours where walls have `rough` 0, 0.25, 0.5 and 1, and an ATRV-mini in all 300 of each.
 #[test]
 fn both_bodies_arrive_however_rough_walls_are() {
     let office = include_str!("../../worlds/office.toml");
